@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+
+namespace sketchsplat {
+
+/// Pinhole camera without distortion. Axes: x right, y down, z forward. Pixel centres are integers.
+struct Camera {
+  int width = 0;   ///< [px]
+  int height = 0;  ///< [px]
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
+
+  /// Pixel of a point with z > 0, in camera coordinates.
+  Eigen::Vector2d project(const Eigen::Vector3d& point_in_cam) const {
+    return {fx * point_in_cam.x() / point_in_cam.z() + cx,
+            fy * point_in_cam.y() / point_in_cam.z() + cy};
+  }
+
+  /// d(pixel) / d(point_in_cam), 2 x 3.
+  Eigen::Matrix<double, 2, 3> project_jacobian(const Eigen::Vector3d& point_in_cam) const {
+    const double iz = 1.0 / point_in_cam.z();
+    Eigen::Matrix<double, 2, 3> J;
+    J << fx * iz, 0, -fx * point_in_cam.x() * iz * iz,  //
+        0, fy * iz, -fy * point_in_cam.y() * iz * iz;
+    return J;
+  }
+
+  /// Direction in camera coordinates with z = 1 of the ray through a pixel.
+  Eigen::Vector3d ray(const Eigen::Vector2d& pixel) const {
+    return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy, 1.0};
+  }
+
+  bool contains(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= width - 1 && pixel.y() <= height - 1;
+  }
+};
+
+}  // namespace sketchsplat

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <vector>
+
+namespace sketchsplat {
+
+/// One channel, row-major. The centre of the top-left pixel is (0, 0).
+template <typename T>
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<T> data;  ///< width * height values
+
+  Image() = default;
+  Image(int w, int h, T value = T()) : width(w), height(h), data(size_t(w) * h, value) {}
+
+  bool empty() const { return data.empty(); }
+  T& at(int x, int y) {
+    assert(x >= 0 && x < width && y >= 0 && y < height);
+    return data[size_t(y) * width + x];
+  }
+  const T& at(int x, int y) const {
+    assert(x >= 0 && x < width && y >= 0 && y < height);
+    return data[size_t(y) * width + x];
+  }
+  T* row(int y) { return data.data() + size_t(y) * width; }
+  const T* row(int y) const { return data.data() + size_t(y) * width; }
+};
+
+/// A picture as the detectors want it: RGB in [0, 1], never premultiplied, and its mask.
+struct Picture {
+  Image<float> red, green, blue;
+  Image<float> alpha;  ///< in [0, 1]; empty if the file has no alpha
+  int width() const { return red.width; }
+  int height() const { return red.height; }
+};
+
+}  // namespace sketchsplat

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "datasets/image.h"
+#include "datasets/view.h"
+
+namespace sketchsplat {
+
+/// A folder of calibrated images, whatever its format.
+struct Scene {
+  std::string folder;
+  std::string format;                ///< "abc-nef", "nerf", ...
+  std::vector<View> views;           ///< frames that can be used, in the order of the scene file
+  Eigen::Matrix4d gt_from_world = Eigen::Matrix4d::Identity();  ///< `worldtogt` of EMAP's layout
+  std::vector<std::string> warnings;  ///< one line per frame that was left out, and why
+};
+
+/// Opens a scene folder. `format` is one of scene_formats() or empty: then the first whose marker
+/// file is there. Frames without a file, with a pose that is not a rotation (|R^T R - I| > 1e-3 or
+/// det < 0) or intrinsics that are not a camera are left out with a warning; small departures from
+/// a rotation are projected to the nearest one. Image contents are not looked at here.
+/// Throws InputError (no such folder, no marker, broken JSON, missing keys, no usable frame).
+Scene open_scene(const std::string& folder, const std::string& format = "");
+
+/// Names that open_scene accepts as `format`, in the order in which it looks for them.
+std::vector<std::string> scene_formats();
+
+/// Reads an image file: 8 or 16 bit grey, grey + alpha, RGB, RGBA -> [0, 1], alpha not premultiplied.
+/// Throws InputError if it is missing, truncated or no image.
+Picture read_picture(const std::string& path);
+
+/// Reads one grey channel in [0, 1] (mean of the colours). Throws InputError.
+Image<float> read_grey(const std::string& path);
+
+/// Writes 8-bit PNG from values in [0, 1] (clamped), whole or not at all. Throws OutputError.
+void write_png(const std::string& path, const Image<float>& grey);
+void write_png(const std::string& path, const Picture& picture);  ///< RGB, RGBA if alpha is there
+
+}  // namespace sketchsplat

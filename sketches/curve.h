@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+#include "sketches/sketch.h"
+
+namespace sketchsplat {
+
+template <typename T>
+using Vec3 = Eigen::Matrix<T, 3, 1>;
+
+/// Two unit vectors that complete a unit normal to a right-handed frame; smooth but for one jump.
+template <typename T>
+void frame_of(const Vec3<T>& normal, Vec3<T>* x, Vec3<T>* y) {
+  // The world axis that is least along the normal: chosen once, so the frame is smooth around it.
+  using std::abs;
+  int k = 0;
+  if (abs(normal.y()) < abs(normal[k])) k = 1;
+  if (abs(normal.z()) < abs(normal[k])) k = 2;
+  Vec3<T> axis = Vec3<T>::Zero();
+  axis[k] = T(1);
+  *x = (axis - normal * normal[k]).normalized();
+  *y = normal.cross(*x);
+}
+
+/// Centre-free description of a circular arc by its chord and sagitta (exact up to 360 deg):
+///   radius = (a^2 + h^2) / (2 h), half angle = 2 atan2(h, a), a = half chord, h = sagitta.
+template <typename T>
+struct ArcFrame {
+  Vec3<T> middle, along, up;  ///< middle of the chord; unit along the chord; unit towards the apex
+  T half_chord, sagitta, radius, half_angle;
+  bool straight;  ///< sagitta below 1e-9 of the chord: radius means nothing
+};
+template <typename T>
+ArcFrame<T> arc_frame(const Vec3<T>& begin, const Vec3<T>& apex, const Vec3<T>& end) {
+  using std::atan2;
+  using std::sqrt;
+  ArcFrame<T> f;
+  f.middle = (begin + end) * T(0.5);
+  const Vec3<T> chord = end - begin;
+  const T length = sqrt(chord.squaredNorm() + T(1e-300));
+  f.along = chord / length;
+  f.half_chord = length * T(0.5);
+  Vec3<T> rise = apex - f.middle;
+  rise -= f.along * f.along.dot(rise);
+  const T rise2 = rise.squaredNorm();
+  f.straight = !(rise2 > T(1e-18) * f.half_chord * f.half_chord);
+  if (f.straight) {
+    f.up = Vec3<T>::Zero();
+    f.sagitta = f.radius = f.half_angle = T(0);
+    return f;
+  }
+  f.sagitta = sqrt(rise2);
+  f.up = rise / f.sagitta;
+  f.radius = (f.half_chord * f.half_chord + rise2) / (T(2) * f.sagitta);
+  f.half_angle = T(2) * atan2(f.sagitta, f.half_chord);
+  return f;
+}
+
+/// Position and derivative by t in [0, 1] of a curve with these control points (order: StrokeKind).
+/// Degenerate controls give finite values: a straight arc is a line, a zero axis is a point.
+template <typename T>
+void evaluate_curve(StrokeKind kind, const Vec3<T>* c, double t, Vec3<T>* position,
+                    Vec3<T>* derivative) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  switch (kind) {
+    case StrokeKind::kLine:
+      *position = c[0] * T(1 - t) + c[1] * T(t);
+      *derivative = c[1] - c[0];
+      return;
+    case StrokeKind::kBezier: {
+      const double s = 1 - t;
+      *position = c[0] * T(s * s * s) + c[1] * T(3 * s * s * t) + c[2] * T(3 * s * t * t) +
+                  c[3] * T(t * t * t);
+      *derivative = (c[1] - c[0]) * T(3 * s * s) + (c[2] - c[1]) * T(6 * s * t) +
+                    (c[3] - c[2]) * T(3 * t * t);
+      return;
+    }
+    case StrokeKind::kArc: {
+      const ArcFrame<T> f = arc_frame<T>(c[0], c[1], c[2]);
+      if (f.straight) {
+        // Keeps the derivative by the apex alive: to first order the arc is a parabola.
+        const Vec3<T> rise = c[1] - f.middle - f.along * f.along.dot(c[1] - f.middle);
+        *position = c[0] * T(1 - t) + c[2] * T(t) + rise * T(4 * t * (1 - t));
+        *derivative = c[2] - c[0] + rise * T(4 - 8 * t);
+        return;
+      }
+      const T psi = T(2 * t - 1) * f.half_angle;
+      const T half = sin(psi * T(0.5));
+      *position = f.middle + f.up * (f.sagitta - T(2) * f.radius * half * half) +
+                  f.along * (f.radius * sin(psi));
+      *derivative = (f.along * cos(psi) - f.up * sin(psi)) * (f.radius * T(2) * f.half_angle);
+      return;
+    }
+    case StrokeKind::kCircle: {
+      const T r2 = c[1].squaredNorm();
+      if (!(r2 > T(0))) {
+        *position = c[0];
+        *derivative = Vec3<T>::Zero();
+        return;
+      }
+      const T r = sqrt(r2);
+      Vec3<T> x, y;
+      frame_of<T>(c[1] / r, &x, &y);
+      const double a = 2 * M_PI * t;
+      *position = c[0] + (x * T(std::cos(a)) + y * T(std::sin(a))) * r;
+      *derivative = (y * T(std::cos(a)) - x * T(std::sin(a))) * (r * T(2 * M_PI));
+      return;
+    }
+    case StrokeKind::kEllipse: {
+      const double a = 2 * M_PI * t;
+      *position = c[0] + c[1] * T(std::cos(a)) + c[2] * T(std::sin(a));
+      *derivative = (c[2] * T(std::cos(a)) - c[1] * T(std::sin(a))) * T(2 * M_PI);
+      return;
+    }
+  }
+}
+
+/// Arc length of a stroke, to about 1e-9 of it.
+double stroke_length(const Sketch& sketch, int stroke);
+
+/// Point and derivative of a stroke at t in [0, 1].
+void evaluate_stroke(const Sketch& sketch, int stroke, double t, Eigen::Vector3d* position,
+                     Eigen::Vector3d* derivative);
+
+/// Curve parameters at which these fractions (in [0, 1]) of the arc length are passed.
+std::vector<double> arc_length_parameters(const Sketch& sketch, int stroke,
+                                          const std::vector<double>& fractions);
+
+/// Points of a stroke, uniform in arc length, both ends included:
+/// 3 x (max(1, ceil(length / spacing)) + 1).
+Eigen::Matrix3Xd sample_stroke(const Sketch& sketch, int stroke, double spacing);
+
+}  // namespace sketchsplat
