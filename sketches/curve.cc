@@ -49,6 +49,28 @@ double stroke_length(const Sketch& sketch, int stroke) {
   return sum;
 }
 
+ControlPoints subcurve(StrokeKind kind, const ControlPoints& curve, double t0, double t1) {
+  ControlPoints out = curve;
+  Eigen::Vector3d d;
+  const auto at = [&](double t) {
+    Eigen::Vector3d p;
+    evaluate_curve<double>(kind, curve.p.data(), t, &p, &d);
+    return p;
+  };
+  if (is_closed(kind)) return out;
+  out.p[0] = at(t0);
+  out.p[curve.count - 1] = at(t1);
+  if (kind == StrokeKind::kArc) out.p[1] = at(0.5 * (t0 + t1));
+  if (kind == StrokeKind::kBezier) {  // Hermite form of the piece
+    Eigen::Vector3d p;
+    evaluate_curve<double>(kind, curve.p.data(), t0, &p, &d);
+    out.p[1] = p + d * ((t1 - t0) / 3);
+    evaluate_curve<double>(kind, curve.p.data(), t1, &p, &d);
+    out.p[2] = p - d * ((t1 - t0) / 3);
+  }
+  return out;
+}
+
 std::vector<double> arc_length_parameters(const Sketch& sketch, int stroke,
                                           const std::vector<double>& fractions) {
   if (has_constant_speed(sketch.strokes[stroke].kind)) return fractions;

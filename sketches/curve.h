@@ -129,6 +129,10 @@ double stroke_length(const Sketch& sketch, int stroke);
 void evaluate_stroke(const Sketch& sketch, int stroke, double t, Eigen::Vector3d* position,
                      Eigen::Vector3d* derivative);
 
+/// The piece of an open curve between two parameters (which may lie outside [0, 1]: lines, arcs and
+/// cubics go on beyond their ends), as control points of the same kind.
+ControlPoints subcurve(StrokeKind kind, const ControlPoints& curve, double t0, double t1);
+
 /// Curve parameters at which these fractions (in [0, 1]) of the arc length are passed.
 std::vector<double> arc_length_parameters(const Sketch& sketch, int stroke,
                                           const std::vector<double>& fractions);
