@@ -61,7 +61,7 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
   const std::vector<int> degree = node_degrees(sketch);
   std::vector<Run> runs(sketch.size());
   std::vector<Eigen::Vector3d> position, tangent;
-  CurveSamples samples;
+  CurvePoints samples;
   samples.first.push_back(0);
   for (int s = 0; s < sketch.size(); ++s) {
     const Stroke& stroke = sketch.strokes[s];
