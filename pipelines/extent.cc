@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "edges/match.h"
+#include "pipelines/observe.h"
 #include "sketches/curve.h"
 
 namespace sketchsplat {
@@ -18,17 +19,32 @@ struct Run {
   double t_first = 0, t_step = 0;
 };
 
+// Owner of every edgel: the stroke that lies nearest to it; -1 if none does.
+std::vector<std::vector<int>> owners(const Sketch& sketch, const EdgeWorld& world) {
+  MatchOptions match;
+  match.reach_px = 1.0;
+  const Observation o = observe(sketch, world, match, 2.0, 1);
+  std::vector<std::vector<int>> owner;
+  for (const EdgelMap& m : world.maps) owner.emplace_back(m.edgels.size(), -1);
+  for (const SampleMatch& m : o.matches.matches) owner[m.view][m.edgel] = o.layout.stroke[m.sample];
+  return owner;
+}
+
 // Last sample from `from` in direction `way` up to which the views keep seeing the stroke.
-int walk(const Matches& matches, const Run& run, int from, int way, int num_views,
-         const ExtentOptions& options) {
+int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int stroke,
+         const Run& run, int from, int way, const ExtentOptions& options) {
+  const int num_views = int(owner.size());
   std::vector<int> recent(num_views);
   std::vector<std::vector<int>> history;
   int last_good = from, bad = 0;
   for (int k = from; k >= 0 && k < run.count; k += way) {
     const int i = run.first + k;
     std::vector<int> here;
-    for (int m = matches.first[i]; m < matches.first[i + 1]; ++m)
-      here.push_back(matches.matches[m].view);
+    for (int m = matches.first[i]; m < matches.first[i + 1]; ++m) {
+      const SampleMatch& match = matches.matches[m];
+      const int other = owner[match.view][match.edgel];
+      if (other < 0 || other == stroke) here.push_back(match.view);
+    }
     const int seen = int(std::min<size_t>(history.size(), kWindow));
     int active = 0, agree = 0;
     for (int v = 0; v < num_views; ++v) active += 2 * recent[v] > seen;
@@ -95,6 +111,7 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
   match.reach_px = 1.0;
   match.exclusive = false;
   const Matches matches = match_samples(world, samples, match);
+  const std::vector<std::vector<int>> owner = owners(sketch, world);
 
   Sketch out = sketch;
   for (int s = 0; s < sketch.size(); ++s) {
@@ -102,12 +119,11 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
     if (run.count == 0) continue;
     const Stroke& stroke = sketch.strokes[s];
     const int middle = int(std::lround((0.5 - run.t_first) / run.t_step));
-    const int views = int(world.views.size());
     double t0 = 0, t1 = 1;
     if (degree[stroke.begin] == 1)
-      t0 = run.t_first + run.t_step * walk(matches, run, middle, -1, views, options);
+      t0 = run.t_first + run.t_step * walk(matches, owner, s, run, middle, -1, options);
     if (degree[stroke.end] == 1)
-      t1 = run.t_first + run.t_step * walk(matches, run, middle, +1, views, options);
+      t1 = run.t_first + run.t_step * walk(matches, owner, s, run, middle, +1, options);
     if (!(t1 - t0 > 0.05)) continue;
     const ControlPoints c = subcurve(stroke.kind, control_points(sketch, s), t0, t1);
     out.nodes.col(stroke.begin) = c.p[0];
