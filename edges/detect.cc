@@ -7,6 +7,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "edges/chain.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -119,68 +121,17 @@ bool localise(const Gradient& g, int x, int y, Edgel* e) {
   return true;
 }
 
-// Edgels by pixel, and the pixel grid that finds them.
-struct Candidates {
-  std::vector<Edgel> edgels;
-  cv::Mat1i at;  ///< index or -1
-};
-
 Candidates find_candidates(const Gradient& g, float low) {
   Candidates c;
-  c.at = cv::Mat1i(g.magnitude.size(), -1);
+  c.at = Image<int>(g.magnitude.cols, g.magnitude.rows, -1);
   for (int y = 1; y + 1 < g.magnitude.rows; ++y)
     for (int x = 1; x + 1 < g.magnitude.cols; ++x) {
       Edgel e;
       if (g.magnitude(y, x) < low || !localise(g, x, y, &e)) continue;
-      c.at(y, x) = int(c.edgels.size());
+      c.at.at(x, y) = int(c.edgels.size());
       c.edgels.push_back(e);
     }
   return c;
-}
-
-// The neighbour that continues edgel i in direction `side` (+1/-1) of its tangent; -1 if there is
-// none.
-int continuation(const Candidates& c, int i, int side) {
-  const Edgel& e = c.edgels[i];
-  const float tx = -e.ny * side, ty = e.nx * side;
-  const int px = int(std::lround(e.x)), py = int(std::lround(e.y));
-  int best = -1;
-  float best_cost = 1e9f;
-  for (int y = std::max(0, py - 2); y <= std::min(c.at.rows - 1, py + 2); ++y)
-    for (int x = std::max(0, px - 2); x <= std::min(c.at.cols - 1, px + 2); ++x) {
-      const int j = c.at(y, x);
-      if (j < 0 || j == i) continue;
-      const Edgel& f = c.edgels[j];
-      const float dx = f.x - e.x, dy = f.y - e.y;
-      const float ahead = dx * tx + dy * ty, aside = std::abs(dx * e.nx + dy * e.ny);
-      const float agree = e.nx * f.nx + e.ny * f.ny;
-      if (ahead < 0.3f || ahead > 2.3f || aside > 0.9f * ahead || agree < 0.6f) continue;
-      const float cost = std::sqrt(dx * dx + dy * dy) + aside + 2 * (1 - agree);
-      if (cost < best_cost) best_cost = cost, best = j;
-    }
-  return best;
-}
-
-// Follows mutual continuations; keeps chains that reach the high threshold.
-void chain_up(const Candidates& c, float high, int min_chain, EdgelMap* map) {
-  const int n = int(c.edgels.size());
-  std::vector<int> next(n), prev(n);
-  for (int i = 0; i < n; ++i) next[i] = continuation(c, i, +1), prev[i] = continuation(c, i, -1);
-  std::vector<bool> done(n);
-  map->chain.assign(1, 0);
-  for (int seed = 0; seed < n; ++seed) {
-    if (done[seed] || c.edgels[seed].strength < high) continue;
-    std::vector<int> back, run;
-    std::vector<bool>& d = done;
-    d[seed] = true;
-    for (int i = seed; (i = prev[i]) >= 0 && !d[i];) d[i] = true, back.push_back(i);
-    run.assign(back.rbegin(), back.rend());
-    run.push_back(seed);
-    for (int i = seed; (i = next[i]) >= 0 && !d[i];) d[i] = true, run.push_back(i);
-    if (int(run.size()) < min_chain) continue;
-    for (int i : run) map->edgels.push_back(c.edgels[i]);
-    map->chain.push_back(int(map->edgels.size()));
-  }
 }
 
 }  // namespace
@@ -197,7 +148,7 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   const float low = float(std::max(options.low_floor / 255, options.low_sigma * unit * map.noise));
   const float high =
       float(std::max(options.high_floor / 255, options.high_sigma * unit * map.noise));
-  chain_up(find_candidates(g, low), high, options.min_chain, &map);
+  chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
   build_lookup(&map, options.reach_px);
   return map;
