@@ -39,7 +39,7 @@ void register_fields(CLI::App* app, const std::vector<Field>& fields, Texts* tex
     }
     CLI::Option* option = app->add_option_function<std::string>(
         flags, [=](const std::string& text) { (*texts)[name] = text; });
-    option->take_last();
+    option->take_last()->type_name("value");
   }
 }
 
@@ -128,13 +128,13 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
     if (parser.subcommands[i]->parsed()) verb = &verbs[i];
   const std::vector<std::string> extras = parser.app.remaining(true);
   // "sketchsplat help reconstruct", as in COLMAP.
-  const bool help_word = !verb && !extras.empty() && extras[0] == "help";
+  const bool help_word = argc > 1 && std::string(argv[1]) == "help";
 
   if (parser.version) {
     std::cout << "sketchsplat " << SKETCHSPLAT_VERSION << "\n";
   } else if (parser.markdown) {
     std::cout << options_markdown(verbs);
-  } else if (parser.help && verb) {
+  } else if ((parser.help || help_word) && verb) {
     std::cout << verb_help(*verb, common_fields.list);
   } else if (parser.help || (help_word && extras.size() == 1)) {
     std::cout << program_help(verbs, common_fields.list);

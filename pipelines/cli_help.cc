@@ -20,39 +20,34 @@ std::string placeholder(const Field& field) {
   return field.unit;
 }
 
-// "--out DIR, -o DIR"; a switch that is on by default is shown as the flag that turns it off.
+// "--out DIR"; a switch that is on by default is shown as the flag that turns it off.
 std::string flag_text(const Field& field) {
   if (field.positional) return field.unit;
-  if (std::holds_alternative<bool*>(field.value)) {
-    const std::string flag = (field.initial == "true" ? "--no-" : "--") + field.name;
-    return field.short_name.empty() ? flag : "-" + field.short_name + ", " + flag;
-  }
-  const std::string flag = "--" + field.name + " " + placeholder(field);
-  return field.short_name.empty() ? flag : "-" + field.short_name + ", " + flag;
+  if (std::holds_alternative<bool*>(field.value))
+    return (field.initial == "true" ? "--no-" : "--") + field.name;
+  return "--" + field.name + " " + placeholder(field);
 }
 
-// One option: flag, help, facts, broken into lines.
+std::string with_short_name(const Field& field) {
+  return (field.short_name.empty() ? "" : "-" + field.short_name + ", ") + flag_text(field);
+}
+
+// One option: flag, help, facts, broken into lines; the facts are not torn apart.
 std::string option_lines(const Field& field) {
-  std::string line = "  " + flag_text(field);
+  std::string line = "  " + with_short_name(field);
   std::string text;
   if (line.size() + 2 > kColumn) {
     text = line + "\n";
     line.clear();
   }
   line.resize(kColumn, ' ');
-  const std::string words = field.help + " " + facts(field);
-  size_t at = 0;
-  while (at < words.size()) {
-    const size_t end = std::min(words.find(' ', at), words.size());
-    if (line.size() + 1 + end - at > kWidth) {
-      text += line + "\n";
-      line.assign(kColumn, ' ');
-    }
-    line += (line.size() > kColumn ? " " : "") + words.substr(at, end - at);
-    at = end + 1;
+  line += field.help;
+  const std::string fact = facts(field);
+  if (!fact.empty() && line.size() + 1 + fact.size() > kWidth) {
+    text += line + "\n";
+    line.assign(kColumn - 1, ' ');
   }
-  while (!line.empty() && line.back() == ' ') line.pop_back();
-  return text + line + "\n";
+  return text + line + (fact.empty() ? "" : " " + fact) + "\n";
 }
 
 std::string option_groups(const std::vector<Field>& fields) {
@@ -143,7 +138,7 @@ std::string options_markdown(const std::vector<Verb>& verbs) {
     text += "`" + usage_line(verb) +
             "`\n\n| option | meaning | unit, range, default |\n|---|---|---|\n";
     for (const Field& field : verb.fields) {
-      std::string flag = flag_text(field);
+      std::string flag = with_short_name(field);
       for (size_t at = 0; (at = flag.find('|', at)) != std::string::npos; at += 2)
         flag.insert(at, "\\");
       std::string fact = facts(field);

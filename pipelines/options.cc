@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/options.h"
 
+#include <cmath>
 #include <utility>
 
 namespace sketchsplat {
@@ -20,12 +21,49 @@ const std::vector<Preset>& presets() {
   return list;
 }
 
+void list_lift(LiftOptions* o, Fields* f) {
+  f->group("Lifting to space");
+  f->add("lift-stride", &o->stride_px, "px", 0.5, 100, "Distance of edgels that are lifted");
+  f->add("lift-views", &o->sweep_views, "views", 2, 10000, "Views that vote on a depth");
+  f->add("lift-match", &o->match_px, "px", 0.1, 20, "Largest distance of an edgel that votes");
+  f->add("lift-inlier", &o->inlier_px, "px", 0.1, 20, "The same for a point that was refined");
+  f->add("lift-angle", &o->angle_deg, "deg", 0.1, 90, "Largest angle of its plane to the tangent");
+  f->add("lift-min-views", &o->min_views, "views", 2, 10000, "Views that must agree");
+}
+
+void list_link(LinkOptions* o, Fields* f) {
+  f->group("Linking to curves");
+  f->add("link-merge", &o->merge_px, "px", 0, 100, "Points nearer along a curve become one");
+  f->add("link-aside", &o->aside_px, "px", 0.1, 100, "Largest offset across a curve");
+  f->add("link-reach", &o->reach_px, "px", 1, 1000, "Longest step from point to point");
+  f->add("link-bend", &o->bend_deg, "deg", 0.1, 180, "Largest departure from a common circle");
+}
+
+void list_match(MatchOptions* o, Fields* f) {
+  f->group("Matching curves to edges");
+  f->add("match-reach", &o->reach_px, "px", 0.1, 100, "Largest distance across an edge");
+  f->add("match-angle", &o->angle_deg, "deg", 0.1, 90, "Largest angle between edge and curve");
+  f->add("match-min-run", &o->min_run, "", 0, 1, "Share of a curve below which a view is ignored");
+}
+
 }  // namespace
+
+void list_fields(DetectOptions* o, Fields* f) {
+  f->group("Edges in the images");
+  f->add("detect-sigma", &o->sigma_px, "px", 0.3, 5, "Smoothing of the gradient");
+  f->add("detect-high", &o->high_sigma, "times the noise", 1, 100, "Gradient that starts an edge");
+  f->add("detect-low", &o->low_sigma, "times the noise", 0.5, 100, "Gradient that continues it");
+  f->add("detect-high-floor", &o->high_floor, "grey levels per px", 0, 255,
+         "Smallest gradient that starts an edge, even without noise");
+  f->add("detect-low-floor", &o->low_floor, "grey levels per px", 0, 255,
+         "Smallest gradient that continues it");
+  f->add("detect-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
+}
 
 void list_fields(CommonOptions* o, Fields* f) {
   f->group("Everywhere");
   f->add("threads", &o->threads, "threads", 0, 1024, "Threads to use; 0 is one per core");
-  f->add("seed", &o->seed, "", 0, 2147483647, "Seed of everything that is drawn at random");
+  f->add("seed", &o->seed, "", 0, HUGE_VAL, "Seed of everything that is drawn at random");
   f->add("quiet", &o->quiet, "Say nothing but errors").short_name = "q";
   f->add("verbose", &o->verbose, "Say more while working").short_name = "v";
 }
@@ -36,8 +74,12 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->choose("preset", &o->preset, preset_names(),
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
-  f->choose("detector", &o->detector, {"image", "2dgs-sn", "maps:NAME"},
+  f->choose("detector", &o->detector, {"image", "maps:NAME"},
             "Where edges come from: the images, or maps in edge_NAME/ of the scene");
+  list_fields(&o->detect, f);
+  list_lift(&o->lift, f);
+  list_link(&o->link, f);
+  list_match(&o->match, f);
 }
 
 void list_fields(OutputOptions* o, Fields* f) {

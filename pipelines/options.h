@@ -4,6 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "edges/detect.h"
+#include "edges/lift.h"
+#include "edges/link.h"
+#include "edges/match.h"
 #include "pipelines/fields.h"
 
 namespace sketchsplat {
@@ -19,8 +23,12 @@ struct CommonOptions {
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
 struct ReconstructOptions {
   std::string preset = "balanced";
-  std::string detector = "image";  ///< "image", "2dgs-sn" or "maps:NAME"
+  std::string detector = "image";  ///< "image" or "maps:NAME"
   int seed = 0;                    ///< copied from CommonOptions
+  DetectOptions detect;
+  LiftOptions lift;
+  LinkOptions link;
+  MatchOptions match;
 };
 
 /// What is written beside the sketch, and how.
@@ -33,6 +41,7 @@ struct OutputOptions {
 /// The members of the option structs, as --help, reports and README show them. To add an option: a
 /// member with its default in the struct, and one line in options.cc.
 void list_fields(CommonOptions* options, Fields* fields);
+void list_fields(DetectOptions* options, Fields* fields);
 void list_fields(ReconstructOptions* options, Fields* fields);
 void list_fields(OutputOptions* options, Fields* fields);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/outputs.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -82,7 +83,7 @@ void write_outputs(const std::string& folder, Reconstruction reconstruction, con
                    Progress* progress) {
   // sketch.json holds what decides the sketch; the report all options.
   Fields method;
-  method.add("seed", &reconstruct_options.seed, "", 0, 2147483647, "");
+  method.add("seed", &reconstruct_options.seed, "", 0, HUGE_VAL, "");
   list_fields(&reconstruct_options, &method);
   Fields all = method;
   list_fields(&output_options, &all);
