@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pipelines/observe.h"
-#include "sketches/refine.h"
+#include "sketches/refine_sketch.h"
 
 namespace sketchsplat {
 

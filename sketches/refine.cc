@@ -1,139 +1,141 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/refine.h"
 
-#include <ceres/ceres.h>
+#include <ceres/jet.h>
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
+#include <Eigen/Cholesky>
+#include <cmath>
 
+#include "sketches/closest.h"
 #include "sketches/curve.h"
 
 namespace sketchsplat {
 namespace {
 
-// |root (x(t) - target)|^2 for one sample of a curve.
-struct SampleResidual {
-  StrokeKind kind;
-  double t;
-  Eigen::Matrix3d root;
-  Eigen::Vector3d target;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+using Jet12 = ceres::Jet<double, 12>;
+using Vector12d = Eigen::Matrix<double, 12, 1>;
+using Matrix12d = Eigen::Matrix<double, 12, 12>;
 
-  template <typename T>
-  bool apply(const T* const* p, int count, T* residual) const {
-    Vec3<T> control[4], position, derivative;
-    for (int i = 0; i < count; ++i) control[i] = Eigen::Map<const Vec3<T>>(p[i]);
-    evaluate_curve<T>(kind, control, t, &position, &derivative);
-    Eigen::Map<Vec3<T>> r(residual);
-    r = root.cast<T>() * (position - target.cast<T>());
-    return true;
-  }
-  template <typename T>
-  bool operator()(const T* a, const T* b, T* r) const {
-    const T* p[] = {a, b};
-    return apply(p, 2, r);
-  }
-  template <typename T>
-  bool operator()(const T* a, const T* b, const T* c, T* r) const {
-    const T* p[] = {a, b, c};
-    return apply(p, 3, r);
-  }
-  template <typename T>
-  bool operator()(const T* a, const T* b, const T* c, const T* d, T* r) const {
-    const T* p[] = {a, b, c, d};
-    return apply(p, 4, r);
-  }
+struct Projection {
+  Eigen::VectorXd t, distance;
 };
 
-struct Hold {
-  double weight;
-  Eigen::Vector3d place;
-  template <typename T>
-  bool operator()(const T* p, T* r) const {
-    for (int k = 0; k < 3; ++k) r[k] = weight * (p[k] - place[k]);
-    return true;
+Projection project(StrokeKind kind, const Matrix3Xd& points, const RefineOptions& options,
+                   const ControlPoints& c) {
+  const int n = int(points.cols());
+  Projection out{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  for (int i = 0; i < n; ++i) {
+    const bool at_begin = i == 0 && options.begin_at_first;
+    if (at_begin || (i == n - 1 && options.end_at_last)) {
+      Vector3d p, d;
+      out.t[i] = at_begin ? 0 : 1;
+      evaluate_curve<double>(kind, c.p.data(), out.t[i], &p, &d);
+      out.distance[i] = (points.col(i) - p).norm();
+    } else {
+      const ClosestPoint nearest = closest_on_curve(kind, c.p.data(), points.col(i));
+      out.t[i] = nearest.t;
+      out.distance[i] = nearest.distance;
+    }
   }
-};
-
-ceres::CostFunction* make_cost(int count, SampleResidual* residual) {
-  if (count == 2) return new ceres::AutoDiffCostFunction<SampleResidual, 3, 3, 3>(residual);
-  if (count == 3) return new ceres::AutoDiffCostFunction<SampleResidual, 3, 3, 3, 3>(residual);
-  return new ceres::AutoDiffCostFunction<SampleResidual, 3, 3, 3, 3, 3>(residual);
+  return out;
 }
 
-// information = root^T root; target = the sample's place of least cost.
-void factor(const Eigen::Matrix3d& information, const Eigen::Vector3d& slope,
-            const Eigen::Vector3d& position, SampleResidual* out) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(information);
-  const Eigen::Vector3d values = es.eigenvalues().cwiseMax(0);
-  out->root = values.cwiseSqrt().asDiagonal() * es.eigenvectors().transpose();
-  Eigen::Vector3d move = es.eigenvectors().transpose() * slope;
-  for (int k = 0; k < 3; ++k) move[k] = values[k] > 1e-6 * values[2] ? -move[k] / values[k] : 0;
-  out->target = position + es.eigenvectors() * move;
+// Normal equations of the distances square to the curve (whole distances at its ends).
+void accumulate(StrokeKind kind, const Vector3d& point, double t, const ControlPoints& c,
+                Matrix12d* H, Vector12d* g) {
+  Vec3<Jet12> control[4], position, derivative;
+  for (int i = 0; i < c.count; ++i)
+    for (int k = 0; k < 3; ++k) control[i][k] = Jet12(c.p[i][k], 3 * i + k);
+  evaluate_curve<Jet12>(kind, control, t, &position, &derivative);
+  Eigen::Matrix<double, 3, 12> J;
+  Vector3d r, tangent;
+  for (int k = 0; k < 3; ++k) {
+    J.row(k) = position[k].v.transpose();
+    r[k] = point[k] - position[k].a;
+    tangent[k] = derivative[k].a;
+  }
+  const bool at_end = !is_closed(kind) && (t <= 0 || t >= 1);
+  if (!at_end) {
+    const Vector3d u = tangent.stableNormalized();
+    J -= (u * (u.transpose() * J)).eval();
+    r -= u * u.dot(r);
+  }
+  *H += J.transpose() * J;
+  *g += J.transpose() * r;
 }
 
-double cost_of(const Sketch& sketch, const SampleLayout& layout, const Samples& before,
-               const SampleQuadratics& q) {
-  const Samples now = evaluate_samples(sketch, layout);
-  double sum = 0;
-  for (int i = 0; i < layout.size(); ++i) {
-    const Eigen::Vector3d d = now.position.col(i) - before.position.col(i);
-    sum += d.dot(q.information[i] * d) + 2 * d.dot(q.slope.col(i));
-  }
-  return sum;
+// One damped step; the damping grows with the sum of the diagonal, so that directions in which the
+// curve only slides along itself stay put.
+Vector12d step(const Matrix12d& H, const Vector12d& g, const RefineOptions& options,
+               double lambda) {
+  Matrix12d A = H;
+  A.diagonal() += lambda * (H.diagonal() + Vector12d::Constant(H.trace() / 12 + 1e-300));
+  Vector12d b = g;
+  for (int i = 0; i < 12; ++i)
+    if (!options.free[i / 3]) {
+      A.row(i).setZero();
+      A.col(i).setZero();
+      A(i, i) = 1;
+      b[i] = 0;
+    }
+  return A.ldlt().solve(b);
 }
 
 }  // namespace
 
-RefineResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
-                           const SampleQuadratics& quadratics, const RefineOptions& options) {
-  RefineResult result;
-  result.sketch = sketch;
-  Sketch& s = result.sketch;
-  const Samples before = evaluate_samples(sketch, layout);
-  ceres::Problem problem;
-  double trace = 0;
-  std::vector<double*> blocks;
-  for (int i = 0; i < layout.size(); ++i) {
-    const double strength = quadratics.information[i].trace();
-    if (!(strength > 0)) continue;
-    trace += strength;
-    const Stroke& stroke = s.strokes[layout.stroke[i]];
-    auto* residual = new SampleResidual;
-    residual->kind = stroke.kind;
-    residual->t = layout.t[i];
-    factor(quadratics.information[i], quadratics.slope.col(i), before.position.col(i), residual);
-    blocks.clear();
-    if (!is_closed(stroke.kind)) blocks.push_back(s.nodes.col(stroke.begin).data());
-    for (int h = 0; h < num_handles(stroke.kind); ++h)
-      blocks.push_back(s.handles.col(stroke.handle + h).data());
-    if (!is_closed(stroke.kind)) blocks.push_back(s.nodes.col(stroke.end).data());
-    if (blocks.size() == 2 && blocks[0] == blocks[1]) {
-      delete residual;
+Normalised normalise(const Matrix3Xd& points, int at_least) {
+  Normalised out;
+  if (points.cols() < at_least || points.cols() == 0 || !points.allFinite()) return out;
+  out.shift = points.rowwise().mean();
+  const Matrix3Xd centred = points.colwise() - out.shift;
+  const double largest = centred.cwiseAbs().maxCoeff();
+  if (!(largest > 1e-13 * points.cwiseAbs().maxCoeff())) return out;
+  out.scale = largest * std::sqrt((centred / largest).colwise().squaredNorm().mean());
+  out.points = centred / out.scale;
+  out.resolution = 1e-15 * (1 + out.shift.cwiseAbs().maxCoeff() / out.scale);
+  out.usable = out.points.allFinite();
+  return out;
+}
+
+FitQuality quality_of(const Eigen::VectorXd& distances) {
+  FitQuality out;
+  out.success = distances.allFinite();
+  if (!out.success || distances.size() == 0) return out;
+  out.rms = std::sqrt(distances.squaredNorm() / double(distances.size()));
+  out.max_distance = distances.cwiseAbs().maxCoeff();
+  return out;
+}
+
+FitQuality refine_curve(StrokeKind kind, const Matrix3Xd& points, const RefineOptions& options,
+                        ControlPoints* control) {
+  constexpr int kSteps = 60;
+  const double nothing = 1e-26 * double(points.cols());  // points are normalised
+  Projection now = project(kind, points, options, *control);
+  double lambda = 1e-3;
+  for (int i = 0; i < kSteps && lambda < 1e8; ++i) {
+    const double cost = now.distance.squaredNorm();
+    if (cost <= nothing) break;
+    Matrix12d H = Matrix12d::Zero();
+    Vector12d g = Vector12d::Zero();
+    for (int k = 0; k < points.cols(); ++k)
+      accumulate(kind, points.col(k), now.t[k], *control, &H, &g);
+    const Vector12d delta = step(H, g, options, lambda);
+    ControlPoints moved = *control;
+    for (int k = 0; k < moved.count; ++k) moved.p[k] += delta.segment<3>(3 * k);
+    const Projection then = project(kind, points, options, moved);
+    const double moved_cost = then.distance.squaredNorm();
+    if (!(moved_cost < cost)) {
+      lambda *= 10;
       continue;
     }
-    if (!is_closed(stroke.kind) && stroke.begin == stroke.end) {
-      delete residual;  // a loop through one node: the solver wants distinct blocks; it stays
-      continue;
-    }
-    problem.AddResidualBlock(make_cost(int(blocks.size()), residual), nullptr, blocks);
+    *control = moved;
+    now = then;
+    lambda = std::max(lambda * 0.1, 1e-12);
+    if (cost - moved_cost < 1e-13 * cost) break;
   }
-  if (problem.NumResidualBlocks() == 0) return result;
-  const double hold = std::sqrt(options.stiffness * trace / problem.NumResidualBlocks());
-  problem.GetParameterBlocks(&blocks);
-  for (double* b : blocks)
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<Hold, 3, 3>(new Hold{hold, Eigen::Vector3d(b)}), nullptr,
-        b);
-  ceres::Solver::Options solver;
-  solver.max_num_iterations = options.max_iterations;
-  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  result.final_cost = cost_of(s, layout, before, quadratics);
-  if (!s.nodes.allFinite() || !s.handles.allFinite()) result.sketch = sketch, result.final_cost = 0;
-  return result;
+  return quality_of(now.distance);
 }
 
 }  // namespace sketchsplat

@@ -2,32 +2,38 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+#include <array>
 
-#include "sketches/sample.h"
+#include "sketches/fit.h"
+#include "sketches/sketch.h"
 
 namespace sketchsplat {
 
-/// What the world wants of every sample: a move d costs d^T information d + 2 slope^T d.
-struct SampleQuadratics {
-  std::vector<Eigen::Matrix3d> information;  ///< symmetric, positive semidefinite
-  Eigen::Matrix3Xd slope;                    ///< 3 x N, in the range of `information`
+/// Points moved and scaled so that their mean is 0 and their root mean square distance from it 1.
+struct Normalised {
+  Eigen::Matrix3Xd points;
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  double scale = 1;
+  double resolution = 1;  ///< rounding of the input in the new unit
+  bool usable = false;    ///< enough points, finite, not all in one place
+  Eigen::Vector3d restore(const Eigen::Vector3d& p) const { return shift + scale * p; }
+  Eigen::Vector3d apply(const Eigen::Vector3d& p) const { return (p - shift) / scale; }
 };
+Normalised normalise(const Eigen::Matrix3Xd& points, int at_least);
 
 struct RefineOptions {
-  double stiffness = 1e-4;  ///< prior that holds control points, in units of the mean information
-  int max_iterations = 20;
+  std::array<bool, 4> free = {true, true, true, true};  ///< control points that may move
+  bool begin_at_first = false;  ///< the first point belongs to t = 0, wherever the curve is
+  bool end_at_last = false;     ///< the last point belongs to t = 1
 };
+/// Moves control points so that the sum of squared distances of `points` to the curve falls to a
+/// local minimum: Levenberg-Marquardt on the distances square to the curve, nearest points found
+/// anew in each step (Wang et al. 2006, "Fitting B-spline curves by squared distance minimization",
+/// tangent distance with damping). Points as normalise() makes them. Returns rms and max_distance.
+FitQuality refine_curve(StrokeKind kind, const Eigen::Matrix3Xd& points,
+                        const RefineOptions& options, ControlPoints* control);
 
-struct RefineResult {
-  Sketch sketch;
-  double initial_cost = 0, final_cost = 0;  ///< of the quadratics, without the prior
-};
-
-/// Moves nodes and handles so that the samples of `layout` reach the least sum of their quadratics.
-/// Strokes that share a node stay joined. What the samples do not determine (an end along its line)
-/// stays where it is.
-RefineResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
-                           const SampleQuadratics& quadratics, const RefineOptions& options = {});
+/// Root mean square and largest of distances; no success if one is not finite.
+FitQuality quality_of(const Eigen::VectorXd& distances);
 
 }  // namespace sketchsplat
