@@ -5,10 +5,17 @@
 #include <vector>
 
 #include "edges/detect.h"
+#include "edges/detect_map.h"
 #include "edges/lift.h"
 #include "edges/link.h"
 #include "edges/match.h"
+#include "pipelines/extent.h"
 #include "pipelines/fields.h"
+#include "pipelines/optimize.h"
+#include "pipelines/polish.h"
+#include "pipelines/select.h"
+#include "sketches/segment.h"
+#include "topology/simplify.h"
 
 namespace sketchsplat {
 
@@ -27,8 +34,18 @@ struct ReconstructOptions {
   int seed = 0;                    ///< copied from CommonOptions
   DetectOptions detect;
   LiftOptions lift;
+  MapOptions maps;
   LinkOptions link;
+  SegmentOptions segment;
   MatchOptions match;
+  SelectOptions select;
+  ExtentOptions extent;
+  OptimizeOptions optimize;
+  TopologyOptions topology;
+  PolishOptions polish;
+  int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
+  bool simplify = true;      ///< run the topology passes between the rounds
+  bool final_polish = true;  ///< end on the edgels themselves
 };
 
 /// What is written beside the sketch, and how.

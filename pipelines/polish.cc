@@ -18,7 +18,7 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     match.max_bias = coarse ? 0 : std::max(options.bias_px, 2 * sigma);
     const Observation o = observe(s, world, match, options.spacing_px, 1);
     sigma = o.matches.sigma_px;
-    const RefineResult refined =
+    const RefineSketchResult refined =
         refine_sketch(s, o.layout, {o.matches.information, o.matches.slope});
     const Samples moved = evaluate_samples(refined.sketch, o.layout);
     const double step = (moved.position - o.samples.position).colwise().norm().maxCoeff();

@@ -84,9 +84,9 @@ double cost_of(const Sketch& sketch, const SampleLayout& layout, const Samples& 
 
 }  // namespace
 
-RefineResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
-                           const SampleQuadratics& quadratics, const RefineOptions& options) {
-  RefineResult result;
+RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
+                           const SampleQuadratics& quadratics, const RefineSketchOptions& options) {
+  RefineSketchResult result;
   result.sketch = sketch;
   Sketch& s = result.sketch;
   const Samples before = evaluate_samples(sketch, layout);

@@ -14,12 +14,12 @@ struct SampleQuadratics {
   Eigen::Matrix3Xd slope;                    ///< 3 x N, in the range of `information`
 };
 
-struct RefineOptions {
+struct RefineSketchOptions {
   double stiffness = 1e-4;  ///< prior that holds control points, in units of the mean information
   int max_iterations = 20;
 };
 
-struct RefineResult {
+struct RefineSketchResult {
   Sketch sketch;
   double initial_cost = 0, final_cost = 0;  ///< of the quadratics, without the prior
 };
@@ -27,7 +27,7 @@ struct RefineResult {
 /// Moves nodes and handles so that the samples of `layout` reach the least sum of their quadratics.
 /// Strokes that share a node stay joined. What the samples do not determine (an end along its line)
 /// stays where it is.
-RefineResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
-                           const SampleQuadratics& quadratics, const RefineOptions& options = {});
+RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
+                           const SampleQuadratics& quadratics, const RefineSketchOptions& options = {});
 
 }  // namespace sketchsplat
