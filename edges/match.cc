@@ -8,7 +8,7 @@ namespace sketchsplat {
 namespace {
 
 // Matches of all samples in one view, in the order of the samples.
-std::vector<SampleMatch> match_view(const EdgeWorld& world, int view, const CurveSamples& samples,
+std::vector<SampleMatch> match_view(const EdgeWorld& world, int view, const CurvePoints& samples,
                                     const MatchOptions& options) {
   std::vector<SampleMatch> out;
   const View& v = world.views[view];
@@ -33,7 +33,7 @@ std::vector<SampleMatch> match_view(const EdgeWorld& world, int view, const Curv
 }
 
 // Drops what a curve matches by accident in this view: too few samples, or all to one side.
-void drop_accidents(const CurveSamples& samples, const MatchOptions& options,
+void drop_accidents(const CurvePoints& samples, const MatchOptions& options,
                     std::vector<SampleMatch>* matches) {
   std::vector<SampleMatch> kept;
   size_t m = 0;
@@ -55,7 +55,7 @@ void drop_accidents(const CurveSamples& samples, const MatchOptions& options,
 }
 
 // Leaves every edgel to the curve that lies nearest to it.
-void make_exclusive(const CurveSamples& samples, size_t num_edgels,
+void make_exclusive(const CurvePoints& samples, size_t num_edgels,
                     std::vector<SampleMatch>* matches) {
   std::vector<int> curve_of(samples.position.cols());
   for (size_t c = 0; c + 1 < samples.first.size(); ++c)
@@ -82,7 +82,7 @@ double robust_sigma(const std::vector<SampleMatch>& matches) {
 
 }  // namespace
 
-Matches match_samples(const EdgeWorld& world, const CurveSamples& samples,
+Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
                       const MatchOptions& options) {
   const int n = int(samples.position.cols()), views = int(world.views.size());
   std::vector<std::vector<SampleMatch>> by_view(views);

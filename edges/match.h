@@ -9,7 +9,7 @@
 namespace sketchsplat {
 
 /// Points on curves in space that look for their edgels. Points of a curve are consecutive.
-struct CurveSamples {
+struct CurvePoints {
   Eigen::Matrix3Xd position;  ///< 3 x N, world units
   Eigen::Matrix3Xd tangent;   ///< 3 x N, unit
   std::vector<int> first;     ///< C + 1: curve c owns samples first[c] .. first[c + 1] - 1
@@ -42,7 +42,7 @@ struct Matches {
   double sigma_px = 0;                       ///< robust standard deviation of the distances
   int views_of(int sample) const { return first[sample + 1] - first[sample]; }
 };
-Matches match_samples(const EdgeWorld& world, const CurveSamples& samples,
+Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
                       const MatchOptions& options);
 
 }  // namespace sketchsplat
