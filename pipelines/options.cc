@@ -14,9 +14,9 @@ struct Preset {
 
 const std::vector<Preset>& presets() {
   static const std::vector<Preset> list = {
-      {"fast", {}},
+      {"fast", {{"steps", "0"}, {"rounds", "1"}, {"lift-views", "16"}}},
       {"balanced", {}},
-      {"accurate", {}},
+      {"accurate", {{"steps", "60"}, {"lift-views", "49"}, {"lift-stride", "2"}}},
   };
   return list;
 }
@@ -39,11 +39,62 @@ void list_link(LinkOptions* o, Fields* f) {
   f->add("link-bend", &o->bend_deg, "deg", 0.1, 180, "Largest departure from a common circle");
 }
 
-void list_match(MatchOptions* o, Fields* f) {
-  f->group("Matching curves to edges");
-  f->add("match-reach", &o->reach_px, "px", 0.1, 100, "Largest distance across an edge");
-  f->add("match-angle", &o->angle_deg, "deg", 0.1, 90, "Largest angle between edge and curve");
-  f->add("match-min-run", &o->min_run, "", 0, 1, "Share of a curve below which a view is ignored");
+void list_maps(MapOptions* o, Fields* f) {
+  f->group("Edge maps of others (--detector maps:NAME)");
+  f->add("map-sigma", &o->sigma_px, "px", 0.3, 10, "Smoothing before the ridge is looked for");
+  f->add("map-high", &o->high, "of strong ridges", 0, 1, "Ridge that starts an edge");
+  f->add("map-low", &o->low, "of strong ridges", 0, 1, "Ridge that continues it");
+  f->add("map-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
+}
+
+void list_segment(SegmentOptions* o, Fields* f) {
+  f->group("Cutting into curves");
+  f->add("segment-tolerance", &o->tolerance, "px", 0.05, 20, "Points keep this near to a curve");
+  f->add("segment-corner", &o->corner_deg, "deg", 1, 180, "Turn that ends a curve");
+}
+
+void list_select(SelectOptions* o, Fields* f) {
+  f->group("Choosing strokes");
+  f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
+  f->add("min-own", &o->min_own, "", 0, 1, "Share of its edgels that no better stroke explains");
+  f->add("min-cover", &o->min_cover, "", 0, 1, "Share of its length that enough views see");
+  f->add("max-rms", &o->max_rms_px, "px", 0.01, 100, "Scatter of its edgels above that of the scene");
+  f->add("max-bias", &o->max_bias_px, "px", 0.01, 100, "Offset from view to view");
+  f->add("max-width", &o->max_width, "times sharp", 1, 100, "Blur of its edges");
+  f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
+}
+
+void list_extent(ExtentOptions* o, Fields* f) {
+  f->group("Ends of strokes");
+  f->add("extend", &o->outward_px, "px", 0, 1000, "How far beyond a free end is looked");
+  f->add("extend-share", &o->share, "", 0.05, 1, "Share of the views that must go on seeing it");
+}
+
+void list_optimize(OptimizeOptions* o, Fields* f) {
+  f->group("Drawing and moving");
+  f->add("steps", &o->steps, "per round", 0, 100000, "Gradient steps on the rendered edges");
+  f->add("step-length", &o->step_px, "px", 1e-4, 10, "Length of the first steps");
+  f->add("splat-spacing", &o->spacing_px, "px", 0.25, 50, "Distance of the Gaussians on a stroke");
+  f->add("splat-sigma", &o->sigma_px, "px", 0.3, 20, "Width of drawn edges");
+  f->add("visibility", &o->visibility, "Draw nothing where a stroke is hidden");
+}
+
+void list_topology(TopologyOptions* o, Fields* f) {
+  f->group("Simplifying the graph");
+  f->add("merge-ends", &o->endpoint_px, "px", 0, 100, "Ends that may become one");
+  f->add("merge-overlap", &o->overlap_px, "px", 0, 100, "Distance of curves drawn twice");
+  f->add("merge-gap", &o->gap_px, "px", 0, 1000, "Gap between pieces of one curve");
+  f->add("merge-offset", &o->offset_px, "px", 0, 100, "Offset between pieces of one line");
+  f->add("merge-joint", &o->joint_px, "px", 0, 100, "Of both pieces from the curve that replaces them");
+  f->add("simplify-kind", &o->kind_px, "px", 0, 100, "Of a curve from the simpler one");
+}
+
+void list_polish(PolishOptions* o, Fields* f) {
+  f->group("Least squares on edgels");
+  f->add("polish-rounds", &o->rounds, "rounds", 0, 1000, "Of matching and solving, at the most");
+  f->add("polish-spacing", &o->spacing_px, "px", 0.25, 50, "Distance of samples on a stroke");
+  f->add("polish-reach", &o->reach_px, "px", 0.1, 20, "Largest distance of an edgel at first");
+  f->add("polish-final-reach", &o->final_reach_px, "px", 0.1, 20, "And at last");
 }
 
 }  // namespace
@@ -79,7 +130,17 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_fields(&o->detect, f);
   list_lift(&o->lift, f);
   list_link(&o->link, f);
-  list_match(&o->match, f);
+  list_maps(&o->maps, f);
+  list_segment(&o->segment, f);
+  list_select(&o->select, f);
+  list_extent(&o->extent, f);
+  list_optimize(&o->optimize, f);
+  list_topology(&o->topology, f);
+  list_polish(&o->polish, f);
+  f->group("Rounds");
+  f->add("rounds", &o->rounds, "rounds", 0, 1000, "Of drawing and simplifying, at the most");
+  f->add("simplify", &o->simplify, "Simplify the graph between the rounds");
+  f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
 }
 
 void list_fields(OutputOptions* o, Fields* f) {

@@ -37,7 +37,6 @@ struct ReconstructOptions {
   MapOptions maps;
   LinkOptions link;
   SegmentOptions segment;
-  MatchOptions match;
   SelectOptions select;
   ExtentOptions extent;
   OptimizeOptions optimize;

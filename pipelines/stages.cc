@@ -154,7 +154,8 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
   Sketch out = options.final_polish ? polish(sketch, world, options.polish) : sketch;
-  MatchOptions match = options.match;
+  MatchOptions match;
+  match.reach_px = 1.0;
   const Observation o =
       observe(out, world, match, options.polish.spacing_px, options.select.min_views);
   record_evidence(o, &out);
