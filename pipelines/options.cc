@@ -58,7 +58,8 @@ void list_select(SelectOptions* o, Fields* f) {
   f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
   f->add("min-own", &o->min_own, "", 0, 1, "Share of its edgels that no better stroke explains");
   f->add("min-cover", &o->min_cover, "", 0, 1, "Share of its length that enough views see");
-  f->add("max-rms", &o->max_rms_px, "px", 0.01, 100, "Scatter of its edgels above that of the scene");
+  f->add("max-rms", &o->max_rms_px, "px", 0.01, 100,
+         "Scatter of its edgels above that of the scene");
   f->add("max-bias", &o->max_bias_px, "px", 0.01, 100, "Offset from view to view");
   f->add("max-width", &o->max_width, "times sharp", 1, 100, "Blur of its edges");
   f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
@@ -85,7 +86,8 @@ void list_topology(TopologyOptions* o, Fields* f) {
   f->add("merge-overlap", &o->overlap_px, "px", 0, 100, "Distance of curves drawn twice");
   f->add("merge-gap", &o->gap_px, "px", 0, 1000, "Gap between pieces of one curve");
   f->add("merge-offset", &o->offset_px, "px", 0, 100, "Offset between pieces of one line");
-  f->add("merge-joint", &o->joint_px, "px", 0, 100, "Of both pieces from the curve that replaces them");
+  f->add("merge-joint", &o->joint_px, "px", 0, 100,
+         "Of both pieces from the curve that replaces them");
   f->add("simplify-kind", &o->kind_px, "px", 0, 100, "Of a curve from the simpler one");
 }
 
