@@ -138,7 +138,8 @@ void set_extent(GroundTruth* truth) {
   if (truth->curves.empty()) add(truth->samples);
   const double longest = (high - low).maxCoeff();
   if (!(longest > 0)) throw InputError(truth->path, "edges with a length", "none");
-  truth->extent = longest >= 0.9 && longest <= 1.1 ? 1.0 : longest;
+  const bool in_unit_cube = low.minCoeff() > -0.05 && high.maxCoeff() < 1.05 && longest >= 0.5;
+  truth->extent = in_unit_cube || (longest >= 0.9 && longest <= 1.1) ? 1.0 : longest;
   truth->center = (low + high) / 2;
 }
 

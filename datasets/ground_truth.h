@@ -24,8 +24,9 @@ struct GroundTruth {
   bool samples_published = false;  ///< `samples` is the content of a *_0.005.ply
   double raw_scale = 0;            ///< world units per unit of the CAD file; 0 if there is none
   /// World length of the object's longest side: what the thousandths of the metrics are of.
-  /// Without the object's box the longest side of the box of the curves, taken as 1 where it is
-  /// between 0.9 and 1.1 (the object then fills the unit cube, its edges nearly so).
+  /// Without the object's box: the longest side of the box of the curves; but 1 where that is
+  /// between 0.9 and 1.1, or where the curves lie in the unit cube and fill half of it: then the
+  /// object fills the cube, as published scenes do, and its edges not quite.
   double extent = 1;
   Eigen::Vector3d center = Eigen::Vector3d::Constant(0.5);  ///< of that box, world
 };

@@ -156,6 +156,19 @@ TEST(FindGroundTruth, ReadsCurvesInMillimetres) {
   EXPECT_EQ(truth.extent, 1) << "0.99 is the unit cube's object";
 }
 
+TEST(FindGroundTruth, KnowsAnObjectThatFillsTheUnitCubeByItsEdges) {
+  const TempFolder folder;
+  const auto extent = [&](const std::string& from, const std::string& to) {
+    return find_ground_truth(folder.write("gt.json", R"([{"type": "line", "points": [)" + from +
+                                                         "," + to + "]}]"))
+        .extent;
+  };
+  EXPECT_EQ(extent("[0.2, 0.5, 0.5]", "[0.9, 0.5, 0.5]"), 1);
+  EXPECT_EQ(extent("[-0.48, 0, 0]", "[0.48, 0, 0]"), 1);
+  EXPECT_NEAR(extent("[0.5, 0.5, 0.5]", "[0.7, 0.5, 0.5]"), 0.2, 1e-12);
+  EXPECT_NEAR(extent("[-0.4, 0.5, 0.5]", "[0.3, 0.5, 0.5]"), 0.7, 1e-12);
+}
+
 TEST(FindGroundTruth, ReadsASketch) {
   Sketch sketch;
   const int a = sketch.add_node({0, 0, 0}), b = sketch.add_node({3, 0, 0});

@@ -18,9 +18,10 @@ const char* kPly =
 
 TEST(ReadPrediction, ReadsParametricEdges) {
   const TempFolder folder;
-  const Prediction p = read_prediction(folder.write(
-      "parametric_edges.json",
-      R"({"curves_ctl_pts": [[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]], "lines_end_pts": [[1,2,3,4,5,6]]})"));
+  const Prediction p =
+      read_prediction(folder.write("parametric_edges.json",
+                                   R"({"curves_ctl_pts": [[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]],
+          "lines_end_pts": [[1,2,3,4,5,6]]})"));
   ASSERT_EQ(p.lines.size(), 1u);
   EXPECT_EQ(p.lines[0].col(1), Eigen::Vector3d(4, 5, 6));
   ASSERT_EQ(p.curves.size(), 1u);
