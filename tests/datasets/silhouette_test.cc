@@ -45,7 +45,7 @@ std::vector<Eigen::Vector3d> vertices_of_obj(const fs::path& path) {
   return points;
 }
 
-/// Binary PLY whose vertices are three doubles and three bytes.
+/// Binary PLY, of the object as it was rendered, whose vertices are three doubles and three bytes.
 std::vector<Eigen::Vector3d> vertices_of_ply(const fs::path& path) {
   const std::string bytes = bytes_of(path.string()), end = "end_header\n";
   std::vector<Eigen::Vector3d> points;
@@ -121,7 +121,7 @@ TEST(Silhouette, OfAnAbcNefSceneIsThatOfItsEdgesAndTheTruncatedFrameIsFound) {
   ASSERT_EQ(scene.views.size(), 50u);
   std::vector<std::string> broken;
   const auto points = vertices_of_ply(file_ending(folder / "gt", ".ply"));
-  expect_centred(mean_offset(scene, normalised(points, "00004926"), &broken));
+  expect_centred(mean_offset(scene, points, &broken));
   EXPECT_EQ(broken, std::vector<std::string>{"21_colors.png"});
   EXPECT_NE(edge_map_path(scene, scene.views[0], "dexined"), "");
   EXPECT_NE(edge_map_path(scene, scene.views[0], "PiDiNet"), "");
