@@ -79,6 +79,7 @@ float measure_noise(const Composite& c) {
 
 struct Gradient {
   cv::Mat1f x, y, magnitude;
+  cv::Mat1f log;  // of the magnitude: across a blurred step it is a parabola, exactly
 };
 
 Gradient gradient_of(const cv::Mat1f& value, double sigma) {
@@ -97,27 +98,28 @@ Gradient gradient_of(const cv::Mat1f& value, double sigma) {
   cv::sepFilter2D(value, g.x, CV_32F, slope, smooth, cv::Point(-1, -1), 0, cv::BORDER_REPLICATE);
   cv::sepFilter2D(value, g.y, CV_32F, smooth, slope, cv::Point(-1, -1), 0, cv::BORDER_REPLICATE);
   cv::magnitude(g.x, g.y, g.magnitude);
+  cv::log(cv::max(g.magnitude, 1e-5f), g.log);
   return g;
 }
 
-// Maximum along the gradient of the quadratic through the 3 x 3 magnitudes (Steger's ridge point).
+// Maximum along the gradient of the quadratic through the 3 x 3 log magnitudes.
 bool localise(const Gradient& g, int x, int y, Edgel* e) {
-  const float *a = g.magnitude[y - 1] + x, *b = g.magnitude[y] + x, *c = g.magnitude[y + 1] + x;
-  const float m = b[0];
+  const float *a = g.log[y - 1] + x, *b = g.log[y] + x, *c = g.log[y + 1] + x;
+  const float m = g.magnitude(y, x);
   const float nx = g.x(y, x) / m, ny = g.y(y, x) / m;
-  const float mx = 0.5f * (b[1] - b[-1]), my = 0.5f * (c[0] - a[0]);
-  const float mxx = b[1] - 2 * b[0] + b[-1], myy = c[0] - 2 * b[0] + a[0];
-  const float mxy = 0.25f * (c[1] - c[-1] - a[1] + a[-1]);
-  const float slope = mx * nx + my * ny;
-  const float bend = mxx * nx * nx + 2 * mxy * nx * ny + myy * ny * ny;
-  if (!(bend < 0)) return false;
+  const float lx = 0.5f * (b[1] - b[-1]), ly = 0.5f * (c[0] - a[0]);
+  const float lxx = b[1] - 2 * b[0] + b[-1], lyy = c[0] - 2 * b[0] + a[0];
+  const float lxy = 0.25f * (c[1] - c[-1] - a[1] + a[-1]);
+  const float slope = lx * nx + ly * ny;
+  const float bend = lxx * nx * nx + 2 * lxy * nx * ny + lyy * ny * ny;
+  if (!(bend < -0.02f)) return false;  // flatter than a blur of 7 px
   const float shift = -slope / bend;
   const float dx = shift * nx, dy = shift * ny;
   if (std::abs(dx) > 0.6f || std::abs(dy) > 0.6f) return false;
   e->x = x + dx, e->y = y + dy;
   e->nx = nx, e->ny = ny;
-  e->strength = m + 0.5f * slope * shift;
-  e->width = std::sqrt(m / -bend);
+  e->strength = m * std::exp(0.5f * slope * shift);
+  e->width = 1 / std::sqrt(-bend);
   return true;
 }
 

@@ -30,7 +30,8 @@ struct EdgelMap {
   int num_chains() const { return chain.empty() ? 0 : int(chain.size()) - 1; }
   /// Nearest edgel to a pixel position, or -1 if none lies within the reach.
   int nearest_at(double x, double y) const {
-    const int u = int(x + 0.5) - x0, v = int(y + 0.5) - y0;
+    if (!(x > -1e6 && x < 1e6 && y > -1e6 && y < 1e6)) return -1;
+    const int u = int(x + 1000000.5) - 1000000 - x0, v = int(y + 1000000.5) - 1000000 - y0;
     if (u < 0 || v < 0 || u >= window_width || v >= window_height) return -1;
     return nearest[size_t(v) * window_width + u];
   }

@@ -46,6 +46,12 @@ Claim claim(const Observation& o, int stroke, const std::vector<std::vector<char
   return c;
 }
 
+// Shading beside a weak edge shifts it more than a strong one: up to half as much again
+// is forgiven below 2 % of the range of grey per pixel.
+double max_bias(const StrokeStats& s, const SelectOptions& options) {
+  return options.max_bias_px * (1 + 0.5 * std::min(1.0, 0.02 / std::max(1e-6, s.strength)));
+}
+
 }  // namespace
 
 PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
@@ -72,7 +78,7 @@ PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
     const Claim c = claim(o, i, owned, &per_view);
     keep[i] = c.views >= options.min_views && c.edgels >= options.min_own * s.matches &&
               s.cover >= options.min_cover && s.rms_px <= max_rms &&
-              s.bias_px <= options.max_bias_px + sigma &&
+              s.bias_px <= max_bias(s, options) + sigma &&
               (sharp <= 0 || s.width_px <= options.max_width * sharp) &&
               s.length_px >= options.min_length_px;
     if (!keep[i]) continue;
