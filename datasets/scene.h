@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/image.h"
+#include "datasets/image_io.h"
 #include "datasets/view.h"
 
 namespace sketchsplat {
@@ -13,8 +13,8 @@ namespace sketchsplat {
 /// A folder of calibrated images, whatever its format.
 struct Scene {
   std::string folder;
-  std::string format;                ///< "abc-nef", "nerf", ...
-  std::vector<View> views;           ///< frames that can be used, in the order of the scene file
+  std::string format;       ///< "abc-nef", "nerf", ...
+  std::vector<View> views;  ///< frames that can be used, in the order of the scene file
   Eigen::Matrix4d gt_from_world = Eigen::Matrix4d::Identity();  ///< `worldtogt` of EMAP's layout
   std::vector<std::string> warnings;  ///< one line per frame that was left out, and why
 };
@@ -29,15 +29,12 @@ Scene open_scene(const std::string& folder, const std::string& format = "");
 /// Names that open_scene accepts as `format`, in the order in which it looks for them.
 std::vector<std::string> scene_formats();
 
-/// Reads an image file: 8 or 16 bit grey, grey + alpha, RGB, RGBA -> [0, 1], alpha not premultiplied.
-/// Throws InputError if it is missing, truncated or no image.
-Picture read_picture(const std::string& path);
+/// The picture of a view; also throws InputError if its size is not the camera's.
+Picture read_picture(const View& view);
 
-/// Reads one grey channel in [0, 1] (mean of the colours). Throws InputError.
-Image<float> read_grey(const std::string& path);
-
-/// Writes 8-bit PNG from values in [0, 1] (clamped), whole or not at all. Throws OutputError.
-void write_png(const std::string& path, const Image<float>& grey);
-void write_png(const std::string& path, const Picture& picture);  ///< RGB, RGBA if alpha is there
+/// Somebody's edge map of a view: edge_<detector>/<image name> in the scene's folder, upper and
+/// lower case of the detector alike; in NEF's layout, train/<image name> is PiDiNet's. Empty if
+/// there is none.
+std::string edge_map_path(const Scene& scene, const View& view, const std::string& detector);
 
 }  // namespace sketchsplat

@@ -19,19 +19,42 @@ double speed(const Sketch& sketch, int stroke, double t) {
   return d.norm();
 }
 
-double length_between(const Sketch& sketch, int stroke, double t0, double t1) {
+double gauss_length(const Sketch& sketch, int stroke, double t0, double t1) {
   double sum = 0;
   for (int k = 0; k < 5; ++k)
     sum += kWeight[k] * speed(sketch, stroke, 0.5 * (t0 + t1) + 0.5 * (t1 - t0) * kNode[k]);
   return 0.5 * (t1 - t0) * sum;
 }
 
+// Halves the interval until the quadrature agrees with itself: cusps and the ends of thin ellipses.
+double refine_length(const Sketch& sketch, int stroke, double t0, double t1, double whole,
+                     double tolerance, int depth) {
+  const double middle = 0.5 * (t0 + t1);
+  const double left = gauss_length(sketch, stroke, t0, middle);
+  const double right = gauss_length(sketch, stroke, middle, t1);
+  if (depth == 0 || !(std::abs(left + right - whole) > tolerance)) return left + right;
+  return refine_length(sketch, stroke, t0, middle, left, tolerance, depth - 1) +
+         refine_length(sketch, stroke, middle, t1, right, tolerance, depth - 1);
+}
+
+double length_between(const Sketch& sketch, int stroke, double t0, double t1, double tolerance) {
+  return refine_length(sketch, stroke, t0, t1, gauss_length(sketch, stroke, t0, t1), tolerance, 12);
+}
+
+// What counts as nothing in a length: 1e-11 of a coarse estimate of the whole.
+double negligible_length(const Sketch& sketch, int stroke) {
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) sum += gauss_length(sketch, stroke, 0.25 * i, 0.25 * (i + 1));
+  return 1e-11 * sum;
+}
+
 bool has_constant_speed(StrokeKind kind) {
   return kind == StrokeKind::kLine || kind == StrokeKind::kArc || kind == StrokeKind::kCircle;
 }
 
-// Enough pieces for 1e-9 on a cubic without a cusp.
-constexpr int kPieces = 32;
+// Pieces of the table of arc lengths: few Newton steps inside one, and a turn of an ellipse has
+// four.
+constexpr int kPieces = 16;
 
 }  // namespace
 
@@ -43,19 +66,43 @@ void evaluate_stroke(const Sketch& sketch, int stroke, double t, Eigen::Vector3d
 
 double stroke_length(const Sketch& sketch, int stroke) {
   if (has_constant_speed(sketch.strokes[stroke].kind)) return speed(sketch, stroke, 0.5);
+  const double tolerance = negligible_length(sketch, stroke);
   double sum = 0;
-  for (int i = 0; i < kPieces; ++i)
-    sum += length_between(sketch, stroke, double(i) / kPieces, double(i + 1) / kPieces);
+  for (int i = 0; i < 4; ++i)
+    sum += length_between(sketch, stroke, 0.25 * i, 0.25 * (i + 1), tolerance);
   return sum;
+}
+
+ControlPoints subcurve(StrokeKind kind, const ControlPoints& curve, double t0, double t1) {
+  ControlPoints out = curve;
+  Eigen::Vector3d d;
+  const auto at = [&](double t) {
+    Eigen::Vector3d p;
+    evaluate_curve<double>(kind, curve.p.data(), t, &p, &d);
+    return p;
+  };
+  if (is_closed(kind)) return out;
+  out.p[0] = at(t0);
+  out.p[curve.count - 1] = at(t1);
+  if (kind == StrokeKind::kArc) out.p[1] = at(0.5 * (t0 + t1));
+  if (kind == StrokeKind::kBezier) {  // Hermite form of the piece
+    Eigen::Vector3d p;
+    evaluate_curve<double>(kind, curve.p.data(), t0, &p, &d);
+    out.p[1] = p + d * ((t1 - t0) / 3);
+    evaluate_curve<double>(kind, curve.p.data(), t1, &p, &d);
+    out.p[2] = p - d * ((t1 - t0) / 3);
+  }
+  return out;
 }
 
 std::vector<double> arc_length_parameters(const Sketch& sketch, int stroke,
                                           const std::vector<double>& fractions) {
   if (has_constant_speed(sketch.strokes[stroke].kind)) return fractions;
+  const double tolerance = negligible_length(sketch, stroke);
   std::vector<double> cumulative(kPieces + 1, 0.0);
   for (int i = 0; i < kPieces; ++i)
     cumulative[i + 1] = cumulative[i] + length_between(sketch, stroke, double(i) / kPieces,
-                                                       double(i + 1) / kPieces);
+                                                       double(i + 1) / kPieces, tolerance);
   const double total = cumulative.back();
   std::vector<double> t;
   for (double f : fractions) {
@@ -70,11 +117,13 @@ std::vector<double> arc_length_parameters(const Sketch& sketch, int stroke,
         0, kPieces - 1);
     const double t0 = double(i) / kPieces;
     double x = t0 + (target - cumulative[i]) / (cumulative[i + 1] - cumulative[i]) / kPieces;
-    for (int it = 0; it < 3; ++it) {  // Newton on the arc length inside the piece
+    for (int it = 0; it < 8; ++it) {  // Newton on the arc length inside the piece
       const double v = speed(sketch, stroke, x);
       if (!(v > 1e-12 * total)) break;
-      x -= (cumulative[i] + length_between(sketch, stroke, t0, x) - target) / v;
-      x = std::clamp(x, t0, t0 + 1.0 / kPieces);
+      const double step =
+          (cumulative[i] + length_between(sketch, stroke, t0, x, tolerance) - target) / v;
+      x = std::clamp(x - step, t0, t0 + 1.0 / kPieces);
+      if (std::abs(step) < 1e-12) break;
     }
     t.push_back(x);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <vector>
 
@@ -12,17 +13,17 @@ namespace sketchsplat {
 template <typename T>
 using Vec3 = Eigen::Matrix<T, 3, 1>;
 
-/// Two unit vectors that complete a unit normal to a right-handed frame; smooth but for one jump.
+/// Two unit vectors that complete a unit normal to a right-handed frame. Smooth in the normal but
+/// for a jump on a cone of 14 deg about an oblique direction, away from the normals that parts
+/// have: a jump at a world axis would make the samples of an axis-aligned circle leap under a small
+/// turn.
 template <typename T>
 void frame_of(const Vec3<T>& normal, Vec3<T>* x, Vec3<T>* y) {
-  // The world axis that is least along the normal: chosen once, so the frame is smooth around it.
   using std::abs;
-  int k = 0;
-  if (abs(normal.y()) < abs(normal[k])) k = 1;
-  if (abs(normal.z()) < abs(normal[k])) k = 2;
-  Vec3<T> axis = Vec3<T>::Zero();
-  axis[k] = T(1);
-  *x = (axis - normal * normal[k]).normalized();
+  Vec3<T> reference(T(2.0 / 7), T(3.0 / 7), T(6.0 / 7));
+  if (abs(normal.dot(reference)) > T(0.97))
+    reference = Vec3<T>(T(6.0 / 7), T(2.0 / 7), T(-3.0 / 7));
+  *x = (reference - normal * normal.dot(reference)).normalized();
   *y = normal.cross(*x);
 }
 
@@ -127,6 +128,10 @@ double stroke_length(const Sketch& sketch, int stroke);
 /// Point and derivative of a stroke at t in [0, 1].
 void evaluate_stroke(const Sketch& sketch, int stroke, double t, Eigen::Vector3d* position,
                      Eigen::Vector3d* derivative);
+
+/// The piece of an open curve between two parameters (which may lie outside [0, 1]: lines, arcs and
+/// cubics go on beyond their ends), as control points of the same kind.
+ControlPoints subcurve(StrokeKind kind, const ControlPoints& curve, double t0, double t1);
 
 /// Curve parameters at which these fractions (in [0, 1]) of the arc length are passed.
 std::vector<double> arc_length_parameters(const Sketch& sketch, int stroke,

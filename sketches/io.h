@@ -3,19 +3,24 @@
 
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 #include "sketches/sketch.h"
 
 namespace sketchsplat {
 
-/// Our own format (`sketch.json`): nodes, strokes, evidence. Numbers survive a round trip exactly.
-/// `extra` is a JSON object as text whose members are added at the top (options, version); may be empty.
+/// Our own format (`sketch.json`): nodes, strokes, evidence. Numbers survive a round trip exactly;
+/// handles come back in the order of the strokes. Centre, normal, radius, angle and principal axes
+/// are written for readers and ignored when read. `extra` is a JSON object as text whose members
+/// are added at the top (options, version); may be empty. Throws InputError if it is none.
+/// As for all writers here, validate(sketch) has nothing to say and the caller looks at the stream.
 void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::string& extra = "");
 /// Throws InputError(path, ...) if the text is no JSON, misses a key or breaks an invariant.
+/// Absent evidence gets its default.
 Sketch read_sketch_json(std::istream& in, const std::string& path);
 
-/// EMAP's `parametric_edges.json`: lines by end points, everything else as cubics (arcs and ellipses
-/// to 1e-5 of their size).
+/// EMAP's `parametric_edges.json`: lines by end points, everything else as cubics (arcs and
+/// ellipses to 1e-5 of their size).
 void write_parametric_edges(std::ostream& out, const Sketch& sketch);
 
 /// All `v` first, then two-vertex `l` segments grouped by `o` per stroke; junctions share a vertex.
@@ -27,10 +32,12 @@ struct StepOptions {
   double scale = 1.0;           ///< file unit (mm) per world unit
 };
 /// AP214 edge-based wireframe: one product, one vertex per junction; LINE, CIRCLE, ELLIPSE,
-/// B_SPLINE_CURVE as such; a colour by kind. No time stamp, so the same sketch gives the same bytes.
+/// B_SPLINE_CURVE as such; a colour by kind. No time stamp, so the same sketch gives the same
+/// bytes.
 void write_step(std::ostream& out, const Sketch& sketch, const StepOptions& options = {});
 
-/// Binary little-endian PLY: samples of all strokes every `spacing` world units with `stroke_index`.
+/// Binary little-endian PLY: samples of all strokes every `spacing` world units with
+/// `stroke_index`.
 void write_edge_points(std::ostream& out, const Sketch& sketch, double spacing);
 
 /// A curve as cubic pieces, 3 x 4 control points each; error at most `tolerance` times its size.

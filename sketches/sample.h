@@ -8,13 +8,14 @@
 
 namespace sketchsplat {
 
-/// Where samples lie on the strokes: discrete, planned once per round, so that positions stay smooth
-/// functions of the control points. Samples of a stroke are consecutive, in the order of the strokes.
+/// Where samples lie on the strokes: discrete, planned once per round, so that positions stay
+/// smooth functions of the control points. Samples of a stroke are consecutive, in the order of the
+/// strokes.
 struct SampleLayout {
-  std::vector<int> stroke;       ///< N  stroke of each sample
-  std::vector<double> t;         ///< N  curve parameter, middles of equal pieces of arc length
-  std::vector<double> length;    ///< N  arc length that the sample stands for, world units
-  std::vector<int> first;        ///< S + 1  samples of stroke s are first[s] .. first[s + 1] - 1
+  std::vector<int> stroke;     ///< N  stroke of each sample
+  std::vector<double> t;       ///< N  curve parameter, middles of equal pieces of arc length
+  std::vector<double> length;  ///< N  arc length that the sample stands for, world units
+  std::vector<int> first;      ///< S + 1  samples of stroke s are first[s] .. first[s + 1] - 1
   int size() const { return int(stroke.size()); }
 };
 

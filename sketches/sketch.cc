@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/sketch.h"
 
+#include <Eigen/Geometry>
 #include <cassert>
 #include <cmath>
 
@@ -12,6 +13,23 @@ constexpr const char* kNames[] = {"line", "arc", "circle", "ellipse", "bezier"};
 void append_column(Eigen::Matrix3Xd* m, const Eigen::Vector3d& p) {
   m->conservativeResize(Eigen::NoChange, m->cols() + 1);
   m->col(m->cols() - 1) = p;
+}
+
+// Sine between the axes of an ellipse, 1 for a circle; 0 if there is no axis, NaN if not finite.
+double axes_sine(const Sketch& sketch, const Stroke& s) {
+  const Eigen::Vector3d u = sketch.handles.col(s.handle + 1);
+  if (s.kind == StrokeKind::kCircle) return u.stableNormalized().norm();
+  return u.stableNormalized().cross(sketch.handles.col(s.handle + 2).stableNormalized()).norm();
+}
+
+// Chord of a line or an arc (an arc closes up without one); of a cubic, that of its control
+// polygon.
+double extent(const Sketch& sketch, int stroke) {
+  const ControlPoints c = control_points(sketch, stroke);
+  double largest = (c.p[c.count - 1] - c.p[0]).norm();
+  if (sketch.strokes[stroke].kind == StrokeKind::kBezier)
+    largest += (c.p[1] - c.p[0]).norm() + (c.p[2] - c.p[0]).norm();
+  return largest;
 }
 
 }  // namespace
@@ -81,6 +99,14 @@ std::vector<std::string> validate(const Sketch& sketch) {
   if (sketch.evidence.size() != sketch.strokes.size())
     complaints.push_back("evidence has " + std::to_string(sketch.evidence.size()) +
                          " entries for " + std::to_string(sketch.strokes.size()) + " strokes");
+  for (size_t i = 0; i < sketch.evidence.size(); ++i) {
+    const Evidence& e = sketch.evidence[i];
+    if (!(e.opacity >= 0 && e.opacity <= 1)) complain(int(i), "has an opacity outside [0, 1]");
+    if (e.support_views < 0 || !std::isfinite(e.rms_px) || !std::isfinite(e.sigma) ||
+        e.rms_px < 0 || e.sigma < 0)
+      complain(int(i), "has negative or infinite evidence");
+  }
+  const auto in_range = [&](int node) { return node >= 0 && node < sketch.nodes.cols(); };
   std::vector<bool> node_used(sketch.nodes.cols()), handle_used(sketch.handles.cols());
   for (int i = 0; i < sketch.size(); ++i) {
     const Stroke& s = sketch.strokes[i];
@@ -88,6 +114,7 @@ std::vector<std::string> validate(const Sketch& sketch) {
     if (nh > 0) {
       if (s.handle < 0 || s.handle + nh > sketch.handles.cols()) {
         complain(i, "handle index out of range");
+        if (in_range(s.begin) && in_range(s.end)) node_used[s.begin] = node_used[s.end] = true;
         continue;
       }
       for (int h = 0; h < nh; ++h) {
@@ -97,17 +124,15 @@ std::vector<std::string> validate(const Sketch& sketch) {
     }
     if (is_closed(s.kind)) {
       if (s.begin >= 0 || s.end >= 0) complain(i, "a closed curve has end nodes");
-      if (!(sketch.handles.col(s.handle + 1).norm() > 0)) complain(i, "has no extent");
+      if (!(axes_sine(sketch, s) > 1e-9)) complain(i, "has no extent");
       continue;
     }
-    if (s.begin < 0 || s.begin >= sketch.nodes.cols() || s.end < 0 ||
-        s.end >= sketch.nodes.cols()) {
+    if (!in_range(s.begin) || !in_range(s.end)) {
       complain(i, "node index out of range");
       continue;
     }
     node_used[s.begin] = node_used[s.end] = true;
-    const double chord = (sketch.nodes.col(s.end) - sketch.nodes.col(s.begin)).norm();
-    if (s.kind != StrokeKind::kBezier && !(chord > 0)) complain(i, "has zero length");
+    if (!(extent(sketch, i) > 0)) complain(i, "has zero length");
   }
   for (size_t n = 0; n < node_used.size(); ++n)
     if (!node_used[n]) complaints.push_back("node " + std::to_string(n) + " belongs to no stroke");

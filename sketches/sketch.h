@@ -10,29 +10,29 @@ namespace sketchsplat {
 
 /// Kinds of curve and the columns of control points that define them:
 ///   line    begin, end
-///   arc     begin, apex, end   circular, < 360 deg; only apex minus its part along the chord counts
-///   circle  centre, axis       closed; axis = unit normal times radius
-///   ellipse centre, u, v       closed; centre + cos u + sin v
-///   bezier  begin, h0, h1, end cubic
+///   arc     begin, apex, end   circular, < 360 deg; only apex minus its part along the chord
+///   counts circle  centre, axis       closed; axis = unit normal times radius ellipse centre, u, v
+///   closed; centre + cos u + sin v bezier  begin, h0, h1, end cubic
 enum class StrokeKind { kLine, kArc, kCircle, kEllipse, kBezier };
 
 constexpr int num_handles(StrokeKind kind) {
-  return kind == StrokeKind::kLine ? 0
-         : kind == StrokeKind::kArc ? 1
+  return kind == StrokeKind::kLine      ? 0
+         : kind == StrokeKind::kArc     ? 1
          : kind == StrokeKind::kEllipse ? 3
                                         : 2;
 }
 constexpr bool is_closed(StrokeKind kind) {
   return kind == StrokeKind::kCircle || kind == StrokeKind::kEllipse;
 }
-const char* kind_name(StrokeKind kind);                     ///< "line", "arc", ...
+const char* kind_name(StrokeKind kind);                      ///< "line", "arc", ...
 bool parse_kind(const std::string& name, StrokeKind* kind);  ///< false if there is no such kind
 
 struct Stroke {
   StrokeKind kind = StrokeKind::kLine;
-  int begin = -1;   ///< column of Sketch::nodes; -1 if closed
-  int end = -1;     ///< column of Sketch::nodes; -1 if closed
-  int handle = -1;  ///< first of num_handles(kind) consecutive columns of Sketch::handles; -1 if none
+  int begin = -1;  ///< column of Sketch::nodes; -1 if closed
+  int end = -1;    ///< column of Sketch::nodes; -1 if closed
+  int handle =
+      -1;  ///< first of num_handles(kind) consecutive columns of Sketch::handles; -1 if none
 };
 
 /// What the images say about a stroke. Filled by the pipeline; zeros if nobody looked.

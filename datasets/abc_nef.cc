@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// EMAP's layout (ABC-NEF_Edge): meta_data.json, color/, edge_<detector>/.
+#include <filesystem>
+
+#include "datasets/format.h"
+#include "datasets/frame.h"
+#include "datasets/json_file.h"
+
+namespace sketchsplat {
+namespace {
+
+std::string scene_file(const std::string& folder) {
+  return (std::filesystem::path(folder) / "meta_data.json").string();
+}
+
+bool is_marked(const std::string& folder) { return std::filesystem::exists(scene_file(folder)); }
+
+void read(const std::string& folder, Scene* scene) {
+  const nlohmann::json json = load_json(scene_file(folder));
+  const JsonValue root{&json, scene_file(folder), ""};
+  if (root.has("worldtogt")) scene->gt_from_world = root["worldtogt"].matrix(4, 4);
+  ImageSize size;
+  if (root.has("width") && root.has("height")) {
+    size = {root["width"].positive_integer(), root["height"].positive_integer()};
+  }
+  for (const JsonValue& entry : root["frames"].elements()) {
+    Frame frame;
+    frame.name = entry["rgb_path"].text();
+    frame.image_path = find_image(folder + "/color", frame.name);
+    frame.size = size;
+    frame.intrinsics = entry["intrinsics"].matrix(3, 3);
+    frame.world_from_cam = entry["camtoworld"].matrix(4, 4);
+    add_frame(frame, scene);
+  }
+}
+
+}  // namespace
+
+const SceneFormat kAbcNefFormat = {"abc-nef", "meta_data.json", is_marked, read};
+
+}  // namespace sketchsplat

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "datasets/scene.h"
+
+namespace sketchsplat {
+
+/// A format of scene folders. One file per format defines its own; scene.cc lists them.
+struct SceneFormat {
+  const char* name;
+  const char* marker;                            ///< in words, for messages
+  bool (*is_marked)(const std::string& folder);  ///< whether the marker is there
+  void (*read)(const std::string& folder,
+               Scene* scene);  ///< views, gt_from_world, warnings; throws InputError
+};
+
+extern const SceneFormat kAbcNefFormat;  ///< abc_nef.cc
+extern const SceneFormat kNerfFormat;    ///< nerf.cc
+
+}  // namespace sketchsplat

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "datasets/scene.h"
+
+namespace sketchsplat {
+
+/// What a scene file says about one image, before it is checked.
+struct Frame {
+  std::string name;        ///< as the scene file calls the image, with folders
+  std::string image_path;  ///< empty if no such file was found
+  ImageSize size;          ///< [px]; 0 x 0: ask the image
+  Eigen::Matrix3d intrinsics = Eigen::Matrix3d::Identity();      ///< pixel centres are integers
+  Eigen::Matrix4d world_from_cam = Eigen::Matrix4d::Identity();  ///< axes of Camera
+};
+
+/// Asks the header of the image for a size that is not known. Returns false if it has none.
+bool complete_size(Frame* frame);
+
+/// Appends the view of a frame to the scene, or a warning that names the frame and says what is
+/// wrong with it.
+void add_frame(const Frame& frame, Scene* scene);
+
+/// First of folder/name, then folder/name with the usual extensions, that is a file; empty if none.
+std::string find_image(const std::string& folder, const std::string& name);
+
+}  // namespace sketchsplat

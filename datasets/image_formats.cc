@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Plug-in, loaded by image_io.cc when a file is no PNG: OpenImageIO brings some 260 shared objects
+// and 0.2 s of start-up, which a run over PNG images need not pay.
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+
+#include "datasets/image_planes.h"
+
+namespace sketchsplat {
+namespace {
+
+/// Channels to read, in the order of Planes: colours (one or three), then alpha if there is one.
+std::vector<int> channels_to_read(const OIIO::ImageSpec& spec) {
+  std::vector<int> colours;
+  for (int c = 0; c < spec.nchannels; ++c) {
+    if (c != spec.alpha_channel && c != spec.z_channel) colours.push_back(c);
+  }
+  colours.resize(std::min<size_t>(colours.size(), colours.size() < 3 ? 1 : 3));
+  if (spec.alpha_channel >= 0 && !colours.empty()) colours.push_back(spec.alpha_channel);
+  return colours;
+}
+
+void divide_by_alpha(Planes* planes) {
+  const std::vector<float>& alpha = planes->plane[planes->channels - 1];
+  for (int c = 0; c + 1 < planes->channels; ++c) {
+    std::vector<float>& colour = planes->plane[c];
+    for (size_t i = 0; i < colour.size(); ++i) {
+      if (alpha[i] > 0) colour[i] /= alpha[i];
+    }
+  }
+}
+
+bool read_planes(const char* path, bool header_only, Planes* planes, std::string* found) {
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &config);
+  if (!input) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  const OIIO::ImageSpec spec = input->spec();
+  const std::vector<int> channels = channels_to_read(spec);
+  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || channels.empty()) {
+    *found = "no two-dimensional image with colours";
+    return false;
+  }
+  planes->width = spec.width;
+  planes->height = spec.height;
+  planes->channels = int(channels.size());
+  if (header_only) return true;
+
+  input->threads(1);
+  std::vector<float> interleaved(size_t(spec.width) * spec.height * spec.nchannels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data())) {
+    *found = input->geterror();
+    return false;
+  }
+  const size_t pixels = size_t(spec.width) * spec.height;
+  for (size_t c = 0; c < channels.size(); ++c) {
+    planes->plane[c].resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+      planes->plane[c][i] = interleaved[i * spec.nchannels + channels[c]];
+    }
+  }
+  // Formats that store premultiplied colours (TIFF, OpenEXR) ignore the wish above.
+  if (spec.alpha_channel >= 0 && !spec.get_int_attribute("oiio:UnassociatedAlpha")) {
+    divide_by_alpha(planes);
+  }
+  for (std::vector<float>& plane : planes->plane) {
+    for (float& v : plane) v = v > 0 ? std::min(v, 1.0f) : 0.0f;  // NaN becomes 0
+  }
+  return true;
+}
+
+}  // namespace
+}  // namespace sketchsplat
+
+extern "C" bool sketchsplat_read_planes(const char* path, bool header_only,
+                                        sketchsplat::Planes* planes, std::string* found) {
+  // The callers are the threads; OpenImageIO shall not start more.
+  static const bool single = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+  (void)single;
+  try {
+    if (sketchsplat::read_planes(path, header_only, planes, found)) return true;
+  } catch (const std::exception& e) {
+    *found = e.what();
+  }
+  if (found->empty()) *found = "something that cannot be decoded";
+  std::replace(found->begin(), found->end(), '\n', ' ');
+  return false;
+}

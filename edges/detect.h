@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "datasets/image.h"
+
+namespace sketchsplat {
+
+/// A point on an edge of an image, localised to a fraction of a pixel.
+struct Edgel {
+  float x = 0, y = 0;    ///< [px], centre of the top-left pixel is (0, 0)
+  float nx = 0, ny = 0;  ///< unit normal, towards the brighter side
+  float strength = 0;    ///< gradient magnitude on the edge, grey values in [0, 1] per px
+  float width = 0;       ///< [px] standard deviation of the gradient's profile across the edge
+};
+
+/// The edgels of one view, chained along the edges, with a look-up by pixel.
+struct EdgelMap {
+  int width = 0, height = 0;  ///< of the image [px]
+  std::vector<Edgel> edgels;  ///< chain after chain
+  std::vector<int> chain;     ///< C + 1: chain c is edgels chain[c] .. chain[c + 1] - 1
+  float noise = 0;            ///< measured noise of the image, grey values in [0, 1]
+
+  // Look-up window: the bounding box of the edgels plus the reach.
+  int x0 = 0, y0 = 0, window_width = 0, window_height = 0;
+  std::vector<int> nearest;  ///< per pixel of the window: nearest edgel within the reach, or -1
+
+  int num_chains() const { return chain.empty() ? 0 : int(chain.size()) - 1; }
+  /// Nearest edgel to a pixel position, or -1 if none lies within the reach.
+  int nearest_at(double x, double y) const {
+    if (!(x > -1e6 && x < 1e6 && y > -1e6 && y < 1e6)) return -1;
+    const int u = int(x + 1000000.5) - 1000000 - x0, v = int(y + 1000000.5) - 1000000 - y0;
+    if (u < 0 || v < 0 || u >= window_width || v >= window_height) return -1;
+    return nearest[size_t(v) * window_width + u];
+  }
+};
+
+/// Fills the look-up of a map for edgels within `reach_px` of a pixel centre.
+void build_lookup(EdgelMap* map, double reach_px);
+
+struct DetectOptions {
+  double sigma_px = 1.0;    ///< [px] smoothing of the gradient
+  double high_sigma = 7.0;  ///< an edge starts at this many standard deviations of the noise
+  double low_sigma = 3.0;   ///< and is followed down to this many
+  double high_floor = 1.5;  ///< [grey levels of 255 per px] the same for noiseless images
+  double low_floor = 0.6;   ///< [grey levels of 255 per px]
+  double pedestal = 0.5;    ///< contrast between object and background where alpha is the mask
+  int min_chain = 6;        ///< [px] shorter chains are dropped
+  double reach_px = 4.0;    ///< [px] of the look-up
+};
+
+/// Edgels of a picture: Gaussian gradient, hysteresis at thresholds that follow the noise measured
+/// in this picture, position at the maximum along the normal. Alpha, if any, is the mask: its
+/// outline is an edge, and colours outside it do not exist. An empty picture gives an empty map.
+EdgelMap detect_edges(const Picture& picture, const DetectOptions& options);
+
+/// Edge map in [0, 1] for people and rasterizers: a ridge of `sigma_px` along every edgel.
+Image<float> draw_edge_map(const EdgelMap& map, double sigma_px);
+
+}  // namespace sketchsplat

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "edges/match.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sketchsplat {
+namespace {
+
+// Matches of all samples in one view, in the order of the samples.
+std::vector<SampleMatch> match_view(const EdgeWorld& world, int view, const CurvePoints& samples,
+                                    const MatchOptions& options) {
+  std::vector<SampleMatch> out;
+  const View& v = world.views[view];
+  const EdgelMap& map = world.maps[view];
+  const double max_sine = std::sin(options.angle_deg * M_PI / 180);
+  for (int i = 0; i < samples.position.cols(); ++i) {
+    double depth;
+    const Eigen::Vector2d p = v.project(samples.position.col(i), &depth);
+    if (!(depth > 0) || !(std::abs(p.x()) < 1e6) || !(std::abs(p.y()) < 1e6)) continue;
+    const int k = map.nearest_at(p.x(), p.y());
+    if (k < 0) continue;
+    const Edgel& e = map.edgels[k];
+    const double d = (p.x() - e.x) * e.nx + (p.y() - e.y) * e.ny;
+    const double along = -(p.x() - e.x) * e.ny + (p.y() - e.y) * e.nx;
+    if (std::abs(d) > options.reach_px || std::abs(along) > 2) continue;
+    const Eigen::Vector3d n = world.plane_normal[view].col(k).cast<double>();
+    if (std::abs(n.dot(samples.tangent.col(i))) > max_sine) continue;
+    const double r = d / options.reach_px;
+    out.push_back({i, view, k, float(d), float(std::max(1e-3, (1 - r * r) * (1 - r * r)))});
+  }
+  return out;
+}
+
+// Drops what a curve matches by accident in this view: too few samples, or all to one side.
+void drop_accidents(const CurvePoints& samples, const MatchOptions& options,
+                    std::vector<SampleMatch>* matches) {
+  std::vector<SampleMatch> kept;
+  size_t m = 0;
+  for (size_t c = 0; c + 1 < samples.first.size(); ++c) {
+    const size_t begin = m;
+    while (m < matches->size() && (*matches)[m].sample < samples.first[c + 1]) ++m;
+    const int n = samples.first[c + 1] - samples.first[c];
+    const int count = int(m - begin);
+    if (count < std::max(std::min(n, 3), int(options.min_run * n))) continue;
+    if (options.max_bias > 0) {
+      std::vector<float> d;
+      for (size_t k = begin; k < m; ++k) d.push_back((*matches)[k].distance_px);
+      std::nth_element(d.begin(), d.begin() + d.size() / 2, d.end());
+      if (std::abs(d[d.size() / 2]) > options.max_bias) continue;
+    }
+    kept.insert(kept.end(), matches->begin() + begin, matches->begin() + m);
+  }
+  matches->swap(kept);
+}
+
+// Leaves every edgel to the curve that lies nearest to it.
+void make_exclusive(const CurvePoints& samples, size_t num_edgels,
+                    std::vector<SampleMatch>* matches) {
+  std::vector<int> curve_of(samples.position.cols());
+  for (size_t c = 0; c + 1 < samples.first.size(); ++c)
+    for (int i = samples.first[c]; i < samples.first[c + 1]; ++i) curve_of[i] = int(c);
+  std::vector<int> owner(num_edgels, -1);
+  std::vector<float> best(num_edgels, 1e9f);
+  for (const SampleMatch& m : *matches) {
+    const float d = std::abs(m.distance_px);
+    if (d < best[m.edgel]) best[m.edgel] = d, owner[m.edgel] = curve_of[m.sample];
+  }
+  matches->erase(
+      std::remove_if(matches->begin(), matches->end(),
+                     [&](const SampleMatch& m) { return owner[m.edgel] != curve_of[m.sample]; }),
+      matches->end());
+}
+
+double robust_sigma(const std::vector<SampleMatch>& matches) {
+  std::vector<float> d;
+  for (const SampleMatch& m : matches) d.push_back(std::abs(m.distance_px));
+  if (d.empty()) return 0;
+  std::nth_element(d.begin(), d.begin() + d.size() / 2, d.end());
+  return 1.4826 * d[d.size() / 2];
+}
+
+}  // namespace
+
+Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
+                      const MatchOptions& options) {
+  const int n = int(samples.position.cols()), views = int(world.views.size());
+  std::vector<std::vector<SampleMatch>> by_view(views);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < views; ++v) {
+    by_view[v] = match_view(world, v, samples, options);
+    drop_accidents(samples, options, &by_view[v]);
+    if (options.exclusive) make_exclusive(samples, world.maps[v].edgels.size(), &by_view[v]);
+  }
+  Matches out;
+  out.first.assign(n + 1, 0);
+  for (const auto& list : by_view)
+    for (const SampleMatch& m : list) ++out.first[m.sample + 1];
+  for (int i = 0; i < n; ++i) out.first[i + 1] += out.first[i];
+  out.matches.resize(out.first[n]);
+  std::vector<int> next(out.first.begin(), out.first.end() - 1);
+  for (const auto& list : by_view)
+    for (const SampleMatch& m : list) out.matches[next[m.sample]++] = m;
+  out.information.assign(n, Eigen::Matrix3d::Zero());
+  out.slope = Eigen::Matrix3Xd::Zero(3, n);
+  for (const SampleMatch& m : out.matches) {
+    const View& v = world.views[m.view];
+    const Edgel& e = world.maps[m.view].edgels[m.edgel];
+    const Eigen::Vector3d q = v.cam_from_world * samples.position.col(m.sample);
+    const Eigen::Vector3d a =
+        (Eigen::RowVector2d(e.nx, e.ny) * v.camera.project_jacobian(q) * v.cam_from_world.rotation)
+            .transpose();
+    out.information[m.sample] += m.weight * a * a.transpose();
+    out.slope.col(m.sample) += m.weight * a * double(m.distance_px);
+  }
+  out.sigma_px = robust_sigma(out.matches);
+  return out;
+}
+
+}  // namespace sketchsplat

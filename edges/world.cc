@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "edges/lift.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr int kGrid = 48;
+
+// The point nearest to all optical axes.
+Eigen::Vector3d meeting_point(const std::vector<View>& views) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Identity() * 1e-9;
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (const View& v : views) {
+    const Eigen::Vector3d axis = v.cam_from_world.rotation.row(2);
+    const Eigen::Matrix3d M = Eigen::Matrix3d::Identity() - axis * axis.transpose();
+    A += M;
+    b += M * v.center_in_world();
+  }
+  return A.ldlt().solve(b);
+}
+
+struct PixelBox {
+  double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
+};
+
+PixelBox box_of(const EdgelMap& map) {
+  PixelBox b;
+  for (const Edgel& e : map.edgels) {
+    b.x0 = std::min(b.x0, double(e.x)), b.x1 = std::max(b.x1, double(e.x));
+    b.y0 = std::min(b.y0, double(e.y)), b.y1 = std::max(b.y1, double(e.y));
+  }
+  return b;
+}
+
+// Voxels of a cube that at most one view in twenty puts outside its box of edgels.
+Eigen::AlignedBox3d carve(const std::vector<View>& views, const std::vector<PixelBox>& boxes,
+                          const Eigen::AlignedBox3d& cube, double margin_px) {
+  Eigen::AlignedBox3d out;
+  const Eigen::Vector3d cell = cube.sizes() / kGrid;
+  int voters = 0;
+  for (const PixelBox& b : boxes) voters += b.x0 <= b.x1;
+  for (int i = 0; i < kGrid; ++i)
+    for (int j = 0; j < kGrid; ++j)
+      for (int k = 0; k < kGrid; ++k) {
+        const Eigen::Vector3d p =
+            cube.min() + cell.cwiseProduct(Eigen::Vector3d(i + .5, j + .5, k + .5));
+        int misses = 0;
+        for (size_t v = 0; v < views.size() && 20 * misses <= voters; ++v) {
+          const PixelBox& b = boxes[v];
+          if (b.x0 > b.x1) continue;
+          double z;
+          const Eigen::Vector2d q = views[v].project(p, &z);
+          const double m =
+              margin_px + 0.9 * cell.maxCoeff() * views[v].camera.fx / std::max(z, 1e-12);
+          misses += z <= 0 || q.x() < b.x0 - m || q.x() > b.x1 + m || q.y() < b.y0 - m ||
+                    q.y() > b.y1 + m;
+        }
+        if (20 * misses <= voters) {
+          out.extend(Eigen::Vector3d(p - cell));
+          out.extend(Eigen::Vector3d(p + cell));
+        }
+      }
+  return out;
+}
+
+}  // namespace
+
+EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
+  EdgeWorld world;
+  world.views = std::move(views);
+  world.maps = std::move(maps);
+  std::vector<PixelBox> boxes;
+  for (const EdgelMap& m : world.maps) boxes.push_back(box_of(m));
+  const Eigen::Vector3d middle = meeting_point(world.views);
+  double reach = 0;
+  for (const View& v : world.views) {
+    const double z = (v.cam_from_world * middle).z();
+    const double half = 0.5 * std::max(v.camera.width / v.camera.fx, v.camera.height / v.camera.fy);
+    if (z > 0) reach = std::max(reach, z * half);
+  }
+  Eigen::AlignedBox3d cube(middle - Eigen::Vector3d::Constant(reach),
+                           middle + Eigen::Vector3d::Constant(reach));
+  for (int pass = 0; pass < 2 && reach > 0; ++pass) cube = carve(world.views, boxes, cube, 2.0);
+  if (reach > 0) world.bounds = cube;
+  std::vector<double> footprint;
+  world.plane_normal.resize(world.views.size());
+  for (size_t i = 0; i < world.views.size(); ++i) {
+    const View& v = world.views[i];
+    const double z = (v.cam_from_world * world.bounds.center()).z();
+    if (z > 0 && !world.bounds.isEmpty()) footprint.push_back(z / v.camera.fx);
+    const Eigen::Matrix3d world_from_cam = v.cam_from_world.rotation.transpose();
+    Eigen::Matrix3Xf& normals = world.plane_normal[i];
+    normals.resize(3, world.maps[i].edgels.size());
+    for (size_t k = 0; k < world.maps[i].edgels.size(); ++k) {
+      const Edgel& e = world.maps[i].edgels[k];
+      const Eigen::Vector3d along(-e.ny / v.camera.fx, e.nx / v.camera.fy, 0);
+      normals.col(k) =
+          (world_from_cam * v.camera.ray({e.x, e.y}).cross(along)).normalized().cast<float>();
+    }
+  }
+  if (!footprint.empty()) {
+    std::nth_element(footprint.begin(), footprint.begin() + footprint.size() / 2, footprint.end());
+    world.footprint = footprint[footprint.size() / 2];
+  }
+  return world;
+}
+
+}  // namespace sketchsplat

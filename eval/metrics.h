@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "eval/prediction.h"
+
+namespace sketchsplat {
+
+/// Samples of the primitives as the published evaluators take them: curves first, then lines;
+/// length // step of each, both ends included, cubics uniform in the parameter, their length by
+/// Simpson's rule on 10000 pieces. What is shorter than `step` gives none. 3 x N.
+Eigen::Matrix3Xd sample_published(const Prediction& prediction, double step);
+
+/// Samples of the primitives uniform in arc length, int(length / step) pieces of each but at least
+/// one, both ends included; cubics as 199 chords. 3 x N.
+Eigen::Matrix3Xd sample_arc_length(const Prediction& prediction, double step);
+
+/// Each segment of a polyline (3 x N) cut into int(length / spacing) pieces, at least one.
+Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing);
+
+/// Mean of the points in each of `count`^3 voxels over [low, high]^3; points outside fall into
+/// voxels beyond and are kept. Ordered by voxel.
+Eigen::Matrix3Xd voxel_average(const Eigen::Matrix3Xd& points, int count, double low, double high);
+
+/// Precision, recall and F at one distance, per cent. F = 2PR / (P + R + 1e-7) of the shares.
+struct Level {
+  double threshold = 0;
+  double precision = 0, recall = 0, f = 0;
+};
+
+struct Score {
+  int samples = 0;          ///< of the prediction
+  int truth_samples = 0;    ///< of the truth
+  double accuracy = 0;      ///< mean distance prediction -> truth; NaN if there is no prediction
+  double completeness = 0;  ///< mean distance truth -> prediction; NaN if there is no prediction
+  std::vector<Level> levels;
+};
+
+/// Compares two sets of samples; a distance counts if it is strictly below a threshold.
+/// `truth` must not be empty.
+Score score(const Eigen::Matrix3Xd& prediction, const Eigen::Matrix3Xd& truth,
+            const std::vector<double>& thresholds);
+
+/// Coordinates rounded to float32, as the published evaluators keep them.
+Eigen::Matrix3Xd as_float(const Eigen::Matrix3Xd& points);
+
+/// Columns one set after the other.
+Eigen::Matrix3Xd concatenate(const std::vector<Eigen::Matrix3Xd>& parts);
+
+}  // namespace sketchsplat

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "eval/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "datasets/errors.h"
+#include "datasets/ply.h"
+#include "sketches/curve.h"
+#include "sketches/io.h"
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace sketchsplat {
+namespace {
+
+// All numbers of nested lists, in order: files differ in how they group coordinates.
+void flatten(const json& value, const std::string& path, std::vector<double>* out) {
+  if (value.is_array()) {
+    for (const json& item : value) flatten(item, path, out);
+  } else if (value.is_number()) {
+    out->push_back(value.get<double>());
+  } else {
+    throw InputError(path, "finite coordinates", value.dump());
+  }
+}
+
+template <int N>
+std::vector<Eigen::Matrix<double, 3, N>> groups_of(const json& document,
+                                                   std::initializer_list<const char*> keys,
+                                                   const std::string& path) {
+  std::vector<double> numbers;
+  for (const char* key : keys) {
+    if (!document.contains(key)) continue;
+    flatten(document[key], path, &numbers);
+    if (numbers.size() % (3 * N) != 0) {
+      throw InputError(path, std::to_string(3 * N) + " numbers for each of \"" + key + "\"",
+                       std::to_string(numbers.size()) + " in all");
+    }
+    break;
+  }
+  std::vector<Eigen::Matrix<double, 3, N>> groups;
+  for (size_t i = 0; i < numbers.size(); i += 3 * N) {
+    groups.push_back(Eigen::Map<Eigen::Matrix<double, 3, N>>(numbers.data() + i));
+  }
+  return groups;
+}
+
+std::vector<Eigen::Matrix3Xd> strokes_of(const PlyPoints& points) {
+  std::map<int, std::vector<Eigen::Index>> members;
+  for (size_t i = 0; i < points.stroke.size(); ++i) {
+    members[points.stroke[i]].push_back(Eigen::Index(i));
+  }
+  std::vector<Eigen::Matrix3Xd> strokes;
+  for (const auto& [stroke, columns] : members) {
+    Eigen::Matrix3Xd samples(3, columns.size());
+    for (size_t i = 0; i < columns.size(); ++i) samples.col(i) = points.position.col(columns[i]);
+    strokes.push_back(std::move(samples));
+  }
+  return strokes;
+}
+
+Prediction read_points(const std::string& path) {
+  const PlyPoints points = read_ply_points(path);
+  Prediction prediction;
+  prediction.points_only = true;
+  prediction.points = points.position;
+  prediction.strokes = strokes_of(points);
+  return prediction;
+}
+
+// Pieces that a stroke is cut into where nothing else tells: it is asked how much of it lies near a
+// curve, and of the curve near it, to 5 thousandths of the object. A thousand serve up to 5
+// objects.
+constexpr double kPieces = 1000;
+
+void add_stroke(const Sketch& sketch, int s, Prediction* prediction) {
+  if (sketch.strokes[s].kind == StrokeKind::kLine) {
+    const ControlPoints c = control_points(sketch, s);
+    prediction->lines.emplace_back();
+    prediction->lines.back() << c.p[0], c.p[1];
+  } else {
+    for (const auto& cubic : to_cubics(sketch, s)) prediction->curves.push_back(cubic);
+  }
+  prediction->strokes.push_back(sample_stroke(sketch, s, stroke_length(sketch, s) / kPieces));
+}
+
+Prediction read_json(const std::string& path) {
+  std::ifstream in(path);
+  Prediction prediction;
+  try {
+    const json document = json::parse(in);
+    if (!document.is_object()) throw InputError(path, "a JSON object", "another value");
+    if (document.contains("strokes")) {
+      in.clear();
+      in.seekg(0);
+      const Sketch sketch = read_sketch_json(in, path);
+      for (int s = 0; s < sketch.size(); ++s) add_stroke(sketch, s, &prediction);
+    } else if (document.contains("points")) {
+      prediction.points_only = true;
+      const auto points = groups_of<1>(document, {"points"}, path);
+      prediction.points.resize(3, points.size());
+      for (size_t i = 0; i < points.size(); ++i) prediction.points.col(i) = points[i];
+    } else if (document.contains("lines_end_pts") || document.contains("curves_ctl_pts") ||
+               document.contains("lines") || document.contains("curves")) {
+      prediction.lines = groups_of<2>(document, {"lines", "lines_end_pts"}, path);
+      prediction.curves = groups_of<4>(document, {"curves", "curves_ctl_pts"}, path);
+    } else {
+      throw InputError(path, "lines_end_pts and curves_ctl_pts, points or strokes", "none of them");
+    }
+  } catch (const json::exception& e) {
+    throw InputError(path, "predicted edges as JSON", e.what());
+  }
+  return prediction;
+}
+
+// Vertex of an OBJ index: from 1, or from the end if negative.
+int vertex_of(const std::string& word, int count, const std::string& path) {
+  int index = 0;
+  std::istringstream(word) >> index;
+  const int at = index > 0 ? index - 1 : count + index;
+  if (index == 0 || at < 0 || at >= count) {
+    throw InputError(path, "an index of a vertex above it", word);
+  }
+  return at;
+}
+
+// Points along segments, given as 6 numbers each, kPieces of them in all or somewhat more.
+Eigen::Matrix3Xd samples_along(const std::vector<double>& numbers) {
+  using Segments = Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic>>;
+  const Segments segments(numbers.data(), 6, Eigen::Index(numbers.size() / 6));
+  const auto offset = [&](Eigen::Index k) -> Eigen::Vector3d {
+    return segments.col(k).tail<3>() - segments.col(k).head<3>();
+  };
+  double length = 0;
+  for (Eigen::Index k = 0; k < segments.cols(); ++k) length += offset(k).norm();
+  std::vector<double> out;
+  for (Eigen::Index k = 0; k < segments.cols(); ++k) {
+    const int pieces =
+        length > 0 ? std::max(1, int(std::ceil(kPieces * offset(k).norm() / length))) : 1;
+    for (int i = 0; i <= pieces; ++i) {
+      const Eigen::Vector3d p = segments.col(k).head<3>() + offset(k) * (double(i) / pieces);
+      out.insert(out.end(), p.data(), p.data() + 3);
+    }
+  }
+  return Eigen::Map<Eigen::Matrix3Xd>(out.data(), 3, Eigen::Index(out.size() / 3));
+}
+
+Prediction read_obj(const std::string& path) {
+  std::ifstream in(path);
+  Prediction prediction;
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::vector<double>> strokes;
+  bool grouped = false, begins = true;
+  for (std::string text; std::getline(in, text);) {
+    std::istringstream line(text);
+    std::string key, word;
+    line >> key;
+    if (key == "v") {
+      Eigen::Vector3d p;
+      if (!(line >> p[0] >> p[1] >> p[2])) throw InputError(path, "three numbers after v", text);
+      vertices.push_back(p);
+    } else if (key == "o") {
+      grouped = begins = true;
+    } else if (key == "l") {
+      if (begins || !grouped) strokes.emplace_back();
+      begins = false;
+      for (int last = -1; line >> word;) {
+        const int at = vertex_of(word, int(vertices.size()), path);
+        if (last >= 0) {
+          for (int v : {last, at}) {
+            strokes.back().insert(strokes.back().end(), vertices[v].data(), vertices[v].data() + 3);
+          }
+          prediction.lines.emplace_back();
+          prediction.lines.back() << vertices[last], vertices[at];
+        }
+        last = at;
+      }
+    }
+  }
+  for (const auto& stroke : strokes) {
+    if (!stroke.empty()) prediction.strokes.push_back(samples_along(stroke));
+  }
+  return prediction;
+}
+
+std::string file_of(const std::string& folder) {
+  for (const char* name : {"parametric_edges.json", "fitting/parametric_edges.json",
+                           "gaussians_all.ply", "edge_points.ply", "sketch.json", "sketch.obj"}) {
+    const fs::path file = fs::path(folder) / name;
+    if (fs::is_regular_file(file)) return file.string();
+  }
+  throw InputError(folder, "parametric_edges.json, edge_points.ply, sketch.json or sketch.obj",
+                   "none of them");
+}
+
+}  // namespace
+
+Prediction read_prediction(const std::string& path) {
+  if (!fs::exists(path)) throw InputError(path, "predicted edges", "nothing there");
+  const std::string file = fs::is_directory(path) ? file_of(path) : path;
+  const std::string extension = fs::path(file).extension().string();
+  Prediction prediction;
+  if (extension == ".json") {
+    prediction = read_json(file);
+    const fs::path points = fs::path(path) / "edge_points.ply";
+    if (prediction.strokes.empty() && file != path && fs::is_regular_file(points)) {
+      prediction.strokes = strokes_of(read_ply_points(points.string()));
+    }
+  } else if (extension == ".ply") {
+    prediction = read_points(file);
+  } else if (extension == ".obj") {
+    prediction = read_obj(file);
+  } else {
+    throw InputError(file, "predicted edges as .json, .ply or .obj", extension);
+  }
+  prediction.path = file;
+  return prediction;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace sketchsplat {
+
+/// Edges to be judged: primitives, or points that are taken as the samples as they are.
+struct Prediction {
+  std::string path;                                 ///< file that was read
+  std::vector<Eigen::Matrix<double, 3, 2>> lines;   ///< end points
+  std::vector<Eigen::Matrix<double, 3, 4>> curves;  ///< control points of cubic Beziers
+  Eigen::Matrix3Xd points;                          ///< 3 x N; only if there are no primitives
+  bool points_only = false;                         ///< `points` counts, even if it is empty
+  /// Samples of each stroke, 3 x N each: which primitives or points belong together. Empty if the
+  /// file does not say; then every primitive is a stroke of its own.
+  std::vector<Eigen::Matrix3Xd> strokes;
+};
+
+/// Reads by name and content:
+///   *.json  EMAP's {lines_end_pts, curves_ctl_pts}, {lines, curves}, {points}, or a sketch graph
+///   *.ply   points, with the strokes if a property tells (edge_points.ply, gaussians_all.ply)
+///   *.obj   `v` and `l`: each consecutive pair of an `l` is a line, each `o` (or `l`) a stroke
+///   folder  the first of parametric_edges.json (with the strokes of edge_points.ply beside it),
+///           fitting/parametric_edges.json, gaussians_all.ply, edge_points.ply, sketch.json,
+///           sketch.obj
+/// Throws InputError.
+Prediction read_prediction(const std::string& path);
+
+}  // namespace sketchsplat

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipelines/fields.h"
+#include "pipelines/options.h"
+#include "pipelines/progress.h"
+
+namespace sketchsplat {
+
+/// What the program answers to whoever started it.
+enum ExitStatus {
+  kDone = 0,
+  kDefect = 1,
+  kWrongUsage = 2,
+  kBadInput = 3,
+  kTooLittle = 4,
+  kNoOutput = 5,
+};
+
+/// One word after the program's name. `fields` point into storage that `run` keeps alive.
+struct Verb {
+  std::string name;
+  std::string summary;                ///< one line
+  std::vector<std::string> examples;  ///< whole command lines
+  std::vector<Field> fields;          ///< values are assigned in this order, after the defaults
+  std::function<void(const CommonOptions&, Progress*)> run;  ///< throws; writes results to stdout
+};
+
+/// Parses the command line, runs the verb, maps exceptions to one line on stderr and an ExitStatus.
+int run_command_line(int argc, const char* const* argv, const std::vector<Verb>& verbs);
+
+/// All verbs and their options as a Markdown table, for the README.
+std::string options_markdown(const std::vector<Verb>& verbs);
+
+// The verbs, a file each (cli_<verb>.cc).
+Verb reconstruct_verb();
+Verb detect_verb();
+Verb evaluate_verb();
+Verb export_verb();
+Verb synthesize_verb();
+
+}  // namespace sketchsplat

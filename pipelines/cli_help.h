@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/cli.h"
+
+namespace sketchsplat {
+
+/// Examples first, then the verbs and the options that all of them understand.
+std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field>& common);
+
+/// Examples first, then every option with unit, range and default.
+std::string verb_help(const Verb& verb, const std::vector<Field>& common);
+
+/// What the verb needs, as a pattern: "reconstruct SCENE --out DIR [options]".
+std::string usage_line(const Verb& verb);
+
+/// The candidate that is nearest to a mistyped word, or nothing if none is near.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace sketchsplat

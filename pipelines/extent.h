@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "edges/lift.h"
+#include "sketches/sketch.h"
+
+namespace sketchsplat {
+
+struct ExtentOptions {
+  double outward_px = 16.0;  ///< [px] how far beyond a free end is looked
+  double share = 0.5;        ///< of the views that see the stroke up to here must see it here
+  int min_views = 3;
+  double min_length_px = 3.0;  ///< [px] shorter strokes are left as they are
+};
+
+/// Lets every free end (a node that one stroke holds) run or retreat to where the views stop seeing
+/// the stroke; edgels that another stroke explains better do not count. Closed strokes and shared
+/// nodes stay.
+Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOptions& options);
+
+}  // namespace sketchsplat

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/cli.h"
+
+int main(int argc, char** argv) {
+  using namespace sketchsplat;
+  return run_command_line(argc, argv, {reconstruct_verb(), detect_verb(), export_verb()});
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/observe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sketches/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+double median(std::vector<float>* values) {
+  if (values->empty()) return 0;
+  const size_t k = values->size() / 2;
+  std::nth_element(values->begin(), values->begin() + k, values->end());
+  return (*values)[k];
+}
+
+StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, int min_views) {
+  StrokeStats s;
+  std::vector<int> count(world.views.size());
+  std::vector<double> sum(world.views.size());
+  std::vector<float> width, strength;
+  double squares = 0;
+  int covered = 0;
+  for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i) {
+    ++s.samples;
+    s.length_px += o.layout.length[i] / world.footprint;
+    covered += o.matches.views_of(i) >= min_views;
+    for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m) {
+      const SampleMatch& match = o.matches.matches[m];
+      ++count[match.view];
+      sum[match.view] += match.distance_px;
+      squares += double(match.distance_px) * match.distance_px;
+      width.push_back(world.maps[match.view].edgels[match.edgel].width);
+      strength.push_back(world.maps[match.view].edgels[match.edgel].strength);
+      ++s.matches;
+    }
+  }
+  double bias = 0;
+  for (size_t v = 0; v < count.size(); ++v) {
+    if (count[v] == 0) continue;
+    ++s.views;
+    bias += sum[v] / count[v] * sum[v] / count[v];
+  }
+  s.rms_px = s.matches ? std::sqrt(squares / s.matches) : 0;
+  s.bias_px = s.views ? std::sqrt(bias / s.views) : 0;
+  s.cover = s.samples ? double(covered) / s.samples : 0;
+  s.width_px = median(&width);
+  s.strength = median(&strength);
+  return s;
+}
+
+}  // namespace
+
+Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
+                    double spacing_px, int min_views) {
+  Observation o;
+  o.layout = plan_samples(sketch, spacing_px * world.footprint);
+  o.samples = evaluate_samples(sketch, o.layout);
+  o.matches =
+      match_samples(world, {o.samples.position, o.samples.tangent, o.layout.first}, options);
+  for (int i = 0; i < sketch.size(); ++i) o.strokes.push_back(summarise(world, o, i, min_views));
+  return o;
+}
+
+void record_evidence(const Observation& observation, Sketch* sketch) {
+  for (int i = 0; i < sketch->size(); ++i) {
+    const StrokeStats& s = observation.strokes[i];
+    Evidence& e = sketch->evidence[i];
+    e.opacity = s.cover;
+    e.support_views = s.views;
+    e.rms_px = s.rms_px;
+    // The weakest direction across the curve, averaged over its samples.
+    double information = 0;
+    for (int k = observation.layout.first[i]; k < observation.layout.first[i + 1]; ++k) {
+      const Eigen::Vector3d t = observation.samples.tangent.col(k);
+      const Eigen::Matrix3d& H = observation.matches.information[k];
+      information += 0.5 * (H.trace() - t.dot(H * t));
+    }
+    e.sigma = information > 0 ? std::max(s.rms_px, 1e-3) / std::sqrt(information) : 0;
+  }
+}
+
+}  // namespace sketchsplat

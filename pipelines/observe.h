@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "edges/match.h"
+#include "sketches/sample.h"
+
+namespace sketchsplat {
+
+/// What the edgels of all views say about one stroke.
+struct StrokeStats {
+  int samples = 0;
+  int views = 0;         ///< in which it explains edgels
+  double rms_px = 0;     ///< of its distances
+  double bias_px = 0;    ///< root mean square over the views of the mean distance in a view
+  double cover = 0;      ///< share of its samples that enough views see
+  double width_px = 0;   ///< median width of its edgels
+  double strength = 0;   ///< median strength of its edgels
+  int matches = 0;       ///< edgels explained, all views
+  double length_px = 0;  ///< its length over the footprint
+};
+
+/// A sketch held against the edgels.
+struct Observation {
+  SampleLayout layout;
+  Samples samples;
+  Matches matches;
+  std::vector<StrokeStats> strokes;  ///< one per stroke
+};
+
+/// Samples every `spacing_px` footprints; `min_views` views make a sample covered.
+Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
+                    double spacing_px, int min_views);
+
+/// Copies what was seen into the sketch's evidence (opacity = cover).
+void record_evidence(const Observation& observation, Sketch* sketch);
+
+}  // namespace sketchsplat

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "edges/lift.h"
+#include "pipelines/observe.h"
+#include "raster/loss.h"
+
+namespace sketchsplat {
+
+/// Which sample is seen in which view, by the evidence: N x V, 1 where an edgel answers the sample,
+/// or its neighbours along the stroke within `gap` samples on both sides; 0 where the stroke is
+/// hidden (or its edge has no contrast): there nothing must be drawn.
+Eigen::MatrixXf sample_visibility(const Observation& observation, int num_views, int gap);
+
+struct OptimizeOptions {
+  int steps = 20;           ///< gradient steps per round; 0 leaves the sketch alone
+  double step_px = 0.15;    ///< [px] length of the first steps; falls to a tenth in a round
+  double spacing_px = 2.0;  ///< [px] between splats
+  double sigma_px = 1.0;    ///< [px] width of the edges in the edge maps
+  bool visibility = true;   ///< draw nothing where a stroke is hidden
+  int gap = 4;              ///< samples: see sample_visibility
+};
+
+/// The edge maps that renderings are compared with.
+std::vector<EdgeTarget> make_targets(const EdgeWorld& world, const OptimizeOptions& options);
+
+struct OptimizeResult {
+  Sketch sketch;
+  double initial_loss = 0, final_loss = 0;  ///< sum over all views
+  int splats = 0;
+};
+
+/// Draws the strokes as Gaussians into every view, compares with the edge maps and moves nodes and
+/// handles, and each stroke's scale and opacity, down the gradient (Adam). Opacities end up in the
+/// evidence of the strokes.
+OptimizeResult optimize(const Sketch& sketch, const EdgeWorld& world,
+                        const std::vector<EdgeTarget>& targets, const OptimizeOptions& options);
+
+}  // namespace sketchsplat

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/options.h"
+
+#include <cmath>
+#include <utility>
+
+namespace sketchsplat {
+namespace {
+
+struct Preset {
+  const char* name;
+  std::vector<std::pair<const char*, const char*>> values;  // option, text
+};
+
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> list = {
+      {"fast", {{"steps", "0"}, {"rounds", "1"}, {"lift-views", "16"}}},
+      {"balanced", {}},
+      {"accurate", {{"steps", "60"}, {"lift-views", "49"}, {"lift-stride", "2"}}},
+  };
+  return list;
+}
+
+void list_lift(LiftOptions* o, Fields* f) {
+  f->group("Lifting to space");
+  f->add("lift-stride", &o->stride_px, "px", 0.5, 100, "Distance of edgels that are lifted");
+  f->add("lift-views", &o->sweep_views, "views", 2, 10000, "Views that vote on a depth");
+  f->add("lift-match", &o->match_px, "px", 0.1, 20, "Largest distance of an edgel that votes");
+  f->add("lift-inlier", &o->inlier_px, "px", 0.1, 20, "The same for a point that was refined");
+  f->add("lift-angle", &o->angle_deg, "deg", 0.1, 90, "Largest angle of its plane to the tangent");
+  f->add("lift-min-views", &o->min_views, "views", 2, 10000, "Views that must agree");
+}
+
+void list_link(LinkOptions* o, Fields* f) {
+  f->group("Linking to curves");
+  f->add("link-merge", &o->merge_px, "px", 0, 100, "Points nearer along a curve become one");
+  f->add("link-aside", &o->aside_px, "px", 0.1, 100, "Largest offset across a curve");
+  f->add("link-reach", &o->reach_px, "px", 1, 1000, "Longest step from point to point");
+  f->add("link-bend", &o->bend_deg, "deg", 0.1, 180, "Largest departure from a common circle");
+}
+
+void list_maps(MapOptions* o, Fields* f) {
+  f->group("Edge maps of others (--detector maps:NAME)");
+  f->add("map-sigma", &o->sigma_px, "px", 0.3, 10, "Smoothing before the ridge is looked for");
+  f->add("map-high", &o->high, "of strong ridges", 0, 1, "Ridge that starts an edge");
+  f->add("map-low", &o->low, "of strong ridges", 0, 1, "Ridge that continues it");
+  f->add("map-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
+}
+
+void list_segment(SegmentOptions* o, Fields* f) {
+  f->group("Cutting into curves");
+  f->add("segment-tolerance", &o->tolerance, "px", 0.05, 20, "Points keep this near to a curve");
+  f->add("segment-corner", &o->corner_deg, "deg", 1, 180, "Turn that ends a curve");
+}
+
+void list_select(SelectOptions* o, Fields* f) {
+  f->group("Choosing strokes");
+  f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
+  f->add("min-own", &o->min_own, "", 0, 1, "Share of its edgels that no better stroke explains");
+  f->add("min-cover", &o->min_cover, "", 0, 1, "Share of its length that enough views see");
+  f->add("max-rms", &o->max_rms_px, "px", 0.01, 100,
+         "Scatter of its edgels above that of the scene");
+  f->add("max-bias", &o->max_bias_px, "px", 0.01, 100, "Offset from view to view");
+  f->add("max-width", &o->max_width, "times sharp", 1, 100, "Blur of its edges");
+  f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
+}
+
+void list_extent(ExtentOptions* o, Fields* f) {
+  f->group("Ends of strokes");
+  f->add("extend", &o->outward_px, "px", 0, 1000, "How far beyond a free end is looked");
+  f->add("extend-share", &o->share, "", 0.05, 1, "Share of the views that must go on seeing it");
+}
+
+void list_optimize(OptimizeOptions* o, Fields* f) {
+  f->group("Drawing and moving");
+  f->add("steps", &o->steps, "per round", 0, 100000, "Gradient steps on the rendered edges");
+  f->add("step-length", &o->step_px, "px", 1e-4, 10, "Length of the first steps");
+  f->add("splat-spacing", &o->spacing_px, "px", 0.25, 50, "Distance of the Gaussians on a stroke");
+  f->add("splat-sigma", &o->sigma_px, "px", 0.3, 20, "Width of drawn edges");
+  f->add("visibility", &o->visibility, "Draw nothing where a stroke is hidden");
+}
+
+void list_topology(TopologyOptions* o, Fields* f) {
+  f->group("Simplifying the graph");
+  f->add("merge-ends", &o->endpoint_px, "px", 0, 100, "Ends that may become one");
+  f->add("merge-overlap", &o->overlap_px, "px", 0, 100, "Distance of curves drawn twice");
+  f->add("merge-gap", &o->gap_px, "px", 0, 1000, "Gap between pieces of one curve");
+  f->add("merge-offset", &o->offset_px, "px", 0, 100, "Offset between pieces of one line");
+  f->add("merge-joint", &o->joint_px, "px", 0, 100,
+         "Of both pieces from the curve that replaces them");
+  f->add("simplify-kind", &o->kind_px, "px", 0, 100, "Of a curve from the simpler one");
+}
+
+void list_polish(PolishOptions* o, Fields* f) {
+  f->group("Least squares on edgels");
+  f->add("polish-rounds", &o->rounds, "rounds", 0, 1000, "Of matching and solving, at the most");
+  f->add("polish-spacing", &o->spacing_px, "px", 0.25, 50, "Distance of samples on a stroke");
+  f->add("polish-reach", &o->reach_px, "px", 0.1, 20, "Largest distance of an edgel at first");
+  f->add("polish-final-reach", &o->final_reach_px, "px", 0.1, 20, "And at last");
+}
+
+}  // namespace
+
+void list_fields(DetectOptions* o, Fields* f) {
+  f->group("Edges in the images");
+  f->add("detect-sigma", &o->sigma_px, "px", 0.3, 5, "Smoothing of the gradient");
+  f->add("detect-high", &o->high_sigma, "times the noise", 1, 100, "Gradient that starts an edge");
+  f->add("detect-low", &o->low_sigma, "times the noise", 0.5, 100, "Gradient that continues it");
+  f->add("detect-high-floor", &o->high_floor, "grey levels per px", 0, 255,
+         "Smallest gradient that starts an edge, even without noise");
+  f->add("detect-low-floor", &o->low_floor, "grey levels per px", 0, 255,
+         "Smallest gradient that continues it");
+  f->add("detect-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
+}
+
+void list_fields(CommonOptions* o, Fields* f) {
+  f->group("Everywhere");
+  f->add("threads", &o->threads, "threads", 0, 1024, "Threads to use; 0 is one per core");
+  f->add("seed", &o->seed, "", 0, HUGE_VAL, "Seed of everything that is drawn at random");
+  f->add("quiet", &o->quiet, "Say nothing but errors").short_name = "q";
+  f->add("verbose", &o->verbose, "Say more while working").short_name = "v";
+}
+
+void list_fields(ReconstructOptions* o, Fields* f) {
+  f->group("Method");
+  // First of its kind: options after it override what it sets.
+  f->choose("preset", &o->preset, preset_names(),
+            "Sets several options at once; others override it")
+      .applied = [o] { apply_preset(o->preset, o); };
+  f->choose("detector", &o->detector, {"image", "maps:NAME"},
+            "Where edges come from: the images, or maps in edge_NAME/ of the scene");
+  list_fields(&o->detect, f);
+  list_lift(&o->lift, f);
+  list_link(&o->link, f);
+  list_maps(&o->maps, f);
+  list_segment(&o->segment, f);
+  list_select(&o->select, f);
+  list_extent(&o->extent, f);
+  list_optimize(&o->optimize, f);
+  list_topology(&o->topology, f);
+  list_polish(&o->polish, f);
+  f->group("Rounds");
+  f->add("rounds", &o->rounds, "rounds", 0, 1000, "Of drawing and simplifying, at the most");
+  f->add("simplify", &o->simplify, "Simplify the graph between the rounds");
+  f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
+}
+
+void list_fields(OutputOptions* o, Fields* f) {
+  f->group("Output");
+  f->add("overlays", &o->overlays, "views", 0, 100, "Views over which the curves are drawn");
+  f->add("point-spacing", &o->point_spacing, "of the extent", 1e-5, 1,
+         "Distance of the samples in edge_points.ply");
+  f->add("step-scale", &o->step_scale, "mm per world unit", 1e-9, 1e9,
+         "Size of a world unit in sketch.step");
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const Preset& preset : presets()) names.push_back(preset.name);
+  return names;
+}
+
+void apply_preset(const std::string& name, ReconstructOptions* options) {
+  Fields fields;
+  list_fields(options, &fields);
+  for (const Preset& preset : presets()) {
+    if (preset.name != name) continue;
+    for (const auto& [option, text] : preset.values) {
+      const Field* field = find_field(fields.list, option);
+      if (!field) throw std::logic_error(std::string("preset of unknown option ") + option);
+      assign(*field, text);
+    }
+    options->preset = name;
+    return;
+  }
+  throw UsageError("--preset: expected one of fast, balanced, accurate, got '" + name + "'");
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edges/detect.h"
+#include "edges/detect_map.h"
+#include "edges/lift.h"
+#include "edges/link.h"
+#include "edges/match.h"
+#include "pipelines/extent.h"
+#include "pipelines/fields.h"
+#include "pipelines/optimize.h"
+#include "pipelines/polish.h"
+#include "pipelines/select.h"
+#include "sketches/segment.h"
+#include "topology/simplify.h"
+
+namespace sketchsplat {
+
+/// What every verb understands.
+struct CommonOptions {
+  int threads = 0;  ///< 0: one per core. Results do not depend on it
+  int seed = 0;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+/// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
+struct ReconstructOptions {
+  std::string preset = "balanced";
+  std::string detector = "image";  ///< "image" or "maps:NAME"
+  int seed = 0;                    ///< copied from CommonOptions
+  DetectOptions detect;
+  LiftOptions lift;
+  MapOptions maps;
+  LinkOptions link;
+  SegmentOptions segment;
+  SelectOptions select;
+  ExtentOptions extent;
+  OptimizeOptions optimize;
+  TopologyOptions topology;
+  PolishOptions polish;
+  int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
+  bool simplify = true;      ///< run the topology passes between the rounds
+  bool final_polish = true;  ///< end on the edgels themselves
+};
+
+/// What is written beside the sketch, and how.
+struct OutputOptions {
+  int overlays = 4;              ///< views that are drawn over
+  double point_spacing = 0.005;  ///< fraction of the sketch's largest extent
+  double step_scale = 1.0;       ///< mm in the STEP file per world unit
+};
+
+/// The members of the option structs, as --help, reports and README show them. To add an option: a
+/// member with its default in the struct, and one line in options.cc.
+void list_fields(CommonOptions* options, Fields* fields);
+void list_fields(DetectOptions* options, Fields* fields);
+void list_fields(ReconstructOptions* options, Fields* fields);
+void list_fields(OutputOptions* options, Fields* fields);
+
+/// Sets what the preset (a name in preset_names()) stands for, leaves the rest alone. "balanced" is
+/// the defaults.
+void apply_preset(const std::string& preset, ReconstructOptions* options);
+std::vector<std::string> preset_names();
+
+}  // namespace sketchsplat

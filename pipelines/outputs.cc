@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/outputs.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "datasets/errors.h"
+#include "pipelines/atomic_file.h"
+#include "pipelines/overlay.h"
+#include "pipelines/report.h"
+#include "sketches/io.h"
+
+namespace sketchsplat {
+namespace fs = std::filesystem;
+namespace {
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+// The picture under an overlay; white if it cannot be read any more.
+Picture background(const View& view, RunReport* report, Progress* progress) {
+  try {
+    return read_picture(view.image_path);
+  } catch (const InputError& e) {
+    warn(e.what(), report, progress);
+    return {};
+  }
+}
+
+std::vector<ReportImage> write_overlays(const std::string& folder, const Sketch& sketch,
+                                        const Scene& scene, int count, RunReport* report,
+                                        Progress* progress) {
+  std::vector<ReportImage> images;
+  for (const int v : spread_views(scene.views, sketch_extent(sketch).center, count)) {
+    const View& view = scene.views[v];
+    const Picture overlay = draw_overlay(sketch, view, background(view, report, progress));
+    const std::string path = folder + "/overlay_" + fs::path(view.name).stem().string() + ".png";
+    write_png(path, overlay);
+    images.push_back({view.name, bytes_of(path)});
+  }
+  return images;
+}
+
+// Overlays of an earlier run show other views, perhaps; nobody should take them for today's.
+void remove_old_overlays(const std::string& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("overlay_", 0) == 0 && entry.path().extension() == ".png")
+      fs::remove(entry.path(), ignored);
+  }
+}
+
+void write_sketch(const std::string& folder, const Sketch& sketch, const Scene& scene,
+                  const std::string& options_json, const OutputOptions& options) {
+  const std::string extra = std::string("{\"program\":\"sketchsplat\",\"version\":\"") +
+                            SKETCHSPLAT_VERSION + "\",\"options\":" + options_json + "}";
+  write_atomically(folder + "/sketch.json",
+                   [&](std::ostream& out) { write_sketch_json(out, sketch, extra); });
+  write_atomically(folder + "/parametric_edges.json",
+                   [&](std::ostream& out) { write_parametric_edges(out, sketch); });
+  write_atomically(folder + "/sketch.obj", [&](std::ostream& out) { write_obj(out, sketch); });
+  StepOptions step;
+  step.name = fs::path(scene.folder + "/.").lexically_normal().parent_path().filename().string();
+  if (step.name.empty()) step.name = "sketch";
+  step.scale = options.step_scale;
+  write_atomically(folder + "/sketch.step",
+                   [&](std::ostream& out) { write_step(out, sketch, step); });
+  const double size = sketch_extent(sketch).size;
+  const double spacing = options.point_spacing * (size > 0 ? size : 1);
+  write_atomically(folder + "/edge_points.ply",
+                   [&](std::ostream& out) { write_edge_points(out, sketch, spacing); });
+}
+
+}  // namespace
+
+void write_outputs(const std::string& folder, Reconstruction reconstruction, const Scene& scene,
+                   ReconstructOptions reconstruct_options, OutputOptions output_options,
+                   Progress* progress) {
+  // sketch.json holds what decides the sketch; the report all options.
+  Fields method;
+  method.add("seed", &reconstruct_options.seed, "", 0, HUGE_VAL, "");
+  list_fields(&reconstruct_options, &method);
+  Fields all = method;
+  list_fields(&output_options, &all);
+  const Sketch& sketch = reconstruction.sketch;
+  std::vector<ReportImage> overlays;
+  {
+    Stage stage("write", 0, &reconstruction.report, progress);
+    write_sketch(folder, sketch, scene, fields_json(method.list), output_options);
+    remove_old_overlays(folder);
+    overlays = write_overlays(folder, sketch, scene, output_options.overlays,
+                              &reconstruction.report, progress);
+    stage.result(folder);
+  }
+  const std::string report = report_json({&reconstruction, &scene, fields_json(all.list)});
+  write_atomically(folder + "/report.json", [&](std::ostream& out) { out << report; });
+  write_atomically(folder + "/report.html",
+                   [&](std::ostream& out) { out << report_html(report, sketch, overlays); });
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "pipelines/options.h"
+#include "pipelines/reconstruct.h"
+
+namespace sketchsplat {
+
+/// Writes everything that `reconstruct` promises into the folder: sketch.json,
+/// parametric_edges.json, sketch.obj, sketch.step, edge_points.ply, overlay_<view>.png, report.json
+/// and report.html. The time that this takes becomes a stage of the report. Throws OutputError.
+void write_outputs(const std::string& folder, Reconstruction reconstruction, const Scene& scene,
+                   ReconstructOptions reconstruct_options, OutputOptions output_options,
+                   Progress* progress);
+
+}  // namespace sketchsplat

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "edges/match.h"
+#include "sketches/sketch.h"
+
+namespace sketchsplat {
+
+struct PolishOptions {
+  int rounds = 6;               ///< of matching and least squares
+  double spacing_px = 3.0;      ///< [px] between samples
+  double reach_px = 1.5;        ///< [px] of a match in the first rounds
+  double final_reach_px = 1.0;  ///< [px] in the last ones, widened if the edgels scatter more
+  double bias_px = 0.4;  ///< [px] a view that sees a stroke this far to one side sees another edge
+  double stop_px = 0.002;  ///< [px] no sample moved farther: done
+};
+
+/// Moves the strokes onto the edgels of all views: match, then least squares with a robust weight
+/// (iteratively reweighted biweight), again and again until nothing moves.
+Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options);
+
+}  // namespace sketchsplat

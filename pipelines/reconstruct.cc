@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/reconstruct.h"
+
+#include "pipelines/stages.h"
+
+namespace sketchsplat {
+
+// The method. Images become edgels, edgels points in space, points strokes; then rounds of drawing
+// the strokes into the views, moving them and simplifying the graph, until nothing changes.
+Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
+                           Progress* progress) {
+  RunReport report;
+  report.warnings = scene.warnings;
+
+  const EdgeWorld world = detect_scene(scene, options, &report, progress);
+  const std::vector<EdgePoint> points = lift_scene(world, options, &report, progress);
+  Sketch sketch = fit_strokes(points, world, options, &report, progress);
+
+  const std::vector<EdgeTarget> targets = make_targets(world, options.optimize);
+  for (int k = 0; k < options.rounds; ++k) {
+    const Round round = run_round(sketch, world, targets, options, &report, progress);
+    sketch = round.sketch;
+    if (!round.changed) break;
+  }
+  sketch = finish_sketch(sketch, world, options, &report, progress);
+  return {sketch, report};
+}
+
+}  // namespace sketchsplat

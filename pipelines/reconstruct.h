@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "datasets/scene.h"
+#include "pipelines/options.h"
+#include "pipelines/run_report.h"
+#include "sketches/sketch.h"
+
+namespace sketchsplat {
+
+struct Reconstruction {
+  Sketch sketch;
+  RunReport report;
+};
+
+/// The edges of the object in the scene. Throws TooLittleError if the images hold too little,
+/// InputError if the detector needs files that are not there. `progress` may be null.
+Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
+                           Progress* progress);
+
+}  // namespace sketchsplat

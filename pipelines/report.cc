@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/report.h"
+
+#include <omp.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipelines/overlay.h"
+#include "pipelines/report_page.h"
+#include "sketches/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Names from files may hold bytes that are no UTF-8: shown as U+FFFD rather than refused.
+std::string dump(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+Json number(double value) {
+  if (std::nearbyint(value) == value && std::abs(value) < 1e15) return int64_t(value);
+  return value;
+}
+
+Json object_of(const Numbers& numbers) {
+  Json object = Json::object();
+  for (const auto& [name, value] : numbers) object[name] = number(value);
+  return object;
+}
+
+Json stages_json(const RunReport& run) {
+  Json stages = Json::array();
+  for (const StageReport& s : run.stages)
+    stages.push_back(
+        {{"name", s.name}, {"seconds", s.seconds}, {"peak_mb", s.peak_mb}, {"result", s.result}});
+  return stages;
+}
+
+Json counts_json(const ReportInput& input) {
+  const Sketch& sketch = input.reconstruction->sketch;
+  Numbers numbers = {{"views", double(input.scene->views.size())},
+                     {"views_left_out", double(input.scene->warnings.size())}};
+  Json counts = object_of(numbers);
+  counts.update(object_of(input.reconstruction->report.counts));
+  counts["curves"] = sketch.size();
+  for (const StrokeKind kind : {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle,
+                                StrokeKind::kEllipse, StrokeKind::kBezier}) {
+    int n = 0;
+    for (const Stroke& stroke : sketch.strokes) n += stroke.kind == kind;
+    counts[kind_name(kind) + std::string("s")] = n;
+  }
+  counts["junctions"] = sketch.nodes.cols();
+  return counts;
+}
+
+// Points of a curve for the screen, relative to the extent.
+Json points_json(const Sketch& sketch, int s, double length, const Extent& extent) {
+  const int pieces = sketch.strokes[s].kind == StrokeKind::kLine ? 1 : 64;
+  const Eigen::Matrix3Xd points = sample_stroke(sketch, s, length / pieces);
+  Json flat = Json::array();
+  for (int i = 0; i < points.cols(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double x = (points(k, i) - extent.center[k]) / extent.size;
+      flat.push_back(std::round(x * 1e6) / 1e6);
+    }
+  return flat;
+}
+
+Json curves_json(const Sketch& sketch) {
+  const Extent extent = sketch_extent(sketch);
+  Json curves = Json::array();
+  for (int s = 0; s < sketch.size(); ++s) {
+    const double length = stroke_length(sketch, s);
+    const Evidence e = s < int(sketch.evidence.size()) ? sketch.evidence[s] : Evidence();
+    const bool visible = length > 0 && extent.size > 0;
+    curves.push_back(
+        {{"kind", kind_name(sketch.strokes[s].kind)},
+         {"length", length},
+         {"opacity", e.opacity},
+         {"support_views", e.support_views},
+         {"rms_px", e.rms_px},
+         {"sigma", e.sigma},
+         {"points", visible ? points_json(sketch, s, length, extent) : Json::array()}});
+  }
+  return curves;
+}
+
+std::string base64(const std::string& bytes) {
+  static const char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t word = 0;
+    for (size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+    for (int k = 3; k >= 0; --k)
+      text += i + size_t(3 - k) > bytes.size() ? '=' : kDigits[word >> (6 * k) & 63];
+  }
+  return text;
+}
+
+// No text of ours may end the script element: "<" appears in JSON inside of strings only.
+std::string without_tags(const std::string& json) {
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+}  // namespace
+
+Extent sketch_extent(const Sketch& sketch) {
+  Eigen::AlignedBox3d box;
+  for (int s = 0; s < sketch.size(); ++s) {
+    const double length = stroke_length(sketch, s);
+    if (!(length > 0) || !std::isfinite(length)) continue;
+    const Eigen::Matrix3Xd points = sample_stroke(sketch, s, length / 64);
+    for (int i = 0; i < points.cols(); ++i) box.extend(points.col(i));
+  }
+  if (box.isEmpty()) return {};
+  return {box.center(), box.sizes().maxCoeff()};
+}
+
+std::string report_json(const ReportInput& input) {
+  const RunReport& run = input.reconstruction->report;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - run.started;
+  Json rounds = Json::array();
+  for (const Numbers& round : run.rounds) rounds.push_back(object_of(round));
+  std::vector<std::string> warnings = input.scene->warnings;
+  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
+
+  Json json;
+  json["program"] = "sketchsplat";
+  json["version"] = SKETCHSPLAT_VERSION;
+  json["scene"] = {{"folder", input.scene->folder}, {"format", input.scene->format}};
+  json["threads"] = omp_get_max_threads();
+  json["seconds"] = seconds.count();
+  json["peak_mb"] = peak_memory_mb();
+  json["counts"] = counts_json(input);
+  json["stages"] = stages_json(run);
+  json["rounds"] = rounds;
+  json["warnings"] = warnings;
+  json["options"] = Json::parse(input.options_json);
+  return dump(json, 2) + "\n";
+}
+
+std::string report_html(const std::string& report, const Sketch& sketch,
+                        const std::vector<ReportImage>& overlays) {
+  Json data;
+  data["report"] = Json::parse(report);
+  data["kinds"] = Json::array();
+  for (const StrokeKind kind : {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle,
+                                StrokeKind::kEllipse, StrokeKind::kBezier})
+    data["kinds"].push_back({{"name", kind_name(kind)}, {"color", kind_color(kind)}});
+  data["curves"] = curves_json(sketch);
+  data["overlays"] = Json::array();
+  for (const ReportImage& image : overlays)
+    data["overlays"].push_back({{"name", image.name}, {"png", base64(image.png)}});
+
+  const std::string page = kReportPage, mark = "@DATA@";
+  const size_t at = page.find(mark);
+  return page.substr(0, at) + without_tags(dump(data, -1)) + page.substr(at + mark.size());
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/reconstruct.h"
+
+namespace sketchsplat {
+
+/// Everything a report tells about a run.
+struct ReportInput {
+  const Reconstruction* reconstruction;
+  const Scene* scene;
+  std::string options_json;  ///< object of option -> value (fields_json)
+};
+
+/// report.json: seconds per stage, peak memory, counts, rounds, warnings, options, version,
+/// threads.
+std::string report_json(const ReportInput& input);
+
+struct ReportImage {
+  std::string name;  ///< of the view
+  std::string png;   ///< the bytes of the file
+};
+
+/// report.html: one page that needs nothing but itself. `report` is the text of report.json.
+std::string report_html(const std::string& report, const Sketch& sketch,
+                        const std::vector<ReportImage>& overlays);
+
+/// Box around the curves, from samples of them; zero-sized at the origin if there are none.
+struct Extent {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double size = 0;  ///< longest side, world units
+};
+Extent sketch_extent(const Sketch& sketch);
+
+}  // namespace sketchsplat

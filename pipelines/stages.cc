@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/stages.h"
+
+#include "datasets/errors.h"
+#include "edges/link.h"
+#include "pipelines/observe.h"
+#include "sketches/segment.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr int kFewestViews = 3;
+
+std::string map_name(const std::string& detector) {
+  return detector.rfind("maps:", 0) == 0 ? detector.substr(5) : "";
+}
+
+}  // namespace
+
+EdgelMap detect_view(const Scene& scene, const std::string& detector, const DetectOptions& detect,
+                     const MapOptions& maps, View* view) {
+  EdgelMap map;
+  const std::string name = map_name(detector);
+  if (name.empty()) {
+    map = detect_edges(read_picture(view->image_path), detect);
+  } else {
+    const std::string path = edge_map_path(scene, *view, name);
+    if (path.empty())
+      throw InputError(scene.folder, "an edge map '" + name + "' of " + view->name, "none");
+    map = detect_ridges(read_grey(path), maps);
+  }
+  view->camera.width = map.width;
+  view->camera.height = map.height;
+  return map;
+}
+
+EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
+                       Progress* progress) {
+  const int n = int(scene.views.size());
+  Stage stage("detect", n, report, progress);
+  std::vector<View> views = scene.views;
+  std::vector<EdgelMap> maps(n);
+  std::vector<std::string> complaints(n);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < n; ++i) {
+    try {
+      maps[i] = detect_view(scene, options.detector, options.detect, options.maps, &views[i]);
+    } catch (const InputError& e) {
+      complaints[i] = e.what();
+    }
+    stage.step();
+  }
+  std::vector<View> good_views;
+  std::vector<EdgelMap> good_maps;
+  size_t edgels = 0, with_edges = 0;
+  for (int i = 0; i < n; ++i) {
+    if (!complaints[i].empty()) {
+      warn("view " + views[i].name + " is left out: " + complaints[i], report, progress);
+      continue;
+    }
+    edgels += maps[i].edgels.size();
+    with_edges += !maps[i].edgels.empty();
+    good_views.push_back(std::move(views[i]));
+    good_maps.push_back(std::move(maps[i]));
+  }
+  if (good_views.empty())
+    throw InputError(scene.folder, "an image that can be read", complaints[0]);
+  if (with_edges < kFewestViews)
+    throw TooLittleError(scene.folder + ": expected edges in at least " +
+                         std::to_string(kFewestViews) + " views, found them in " +
+                         std::to_string(with_edges));
+  report->counts.push_back({"views", double(good_views.size())});
+  report->counts.push_back({"edgels", double(edgels)});
+  stage.result(std::to_string(edgels) + " edgels in " + std::to_string(good_views.size()) +
+               " views");
+  return make_edge_world(std::move(good_views), std::move(good_maps));
+}
+
+std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
+                                  RunReport* report, Progress* progress) {
+  Stage stage("lift", 0, report, progress);
+  std::vector<EdgePoint> points = lift_edges(world, options.lift);
+  if (points.empty())
+    throw TooLittleError("expected edges that several views see, found none that agree");
+  report->counts.push_back({"points", double(points.size())});
+  stage.result(std::to_string(points.size()) + " points");
+  return points;
+}
+
+namespace {
+
+Sketch initial_sketch(const std::vector<EdgePoint>& points, double footprint,
+                      const ReconstructOptions& options) {
+  const std::vector<EdgePoint> thin = thin_points(points, footprint, options.link);
+  Sketch sketch;
+  for (const PointChain& chain : link_points(thin, footprint, options.link)) {
+    Eigen::Matrix3Xd position(3, chain.points.size()), tangent(3, chain.points.size());
+    for (size_t i = 0; i < chain.points.size(); ++i) {
+      position.col(i) = thin[chain.points[i]].position;
+      tangent.col(i) = thin[chain.points[i]].tangent;
+    }
+    segment_chain(position, tangent, chain.closed, footprint, options.segment, &sketch);
+  }
+  return sketch;
+}
+
+Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
+  return polish(fit_extents(sketch, world, options.extent), world, options.polish);
+}
+
+}  // namespace
+
+Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
+                   const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  Stage stage("fit", 0, report, progress);
+  const Sketch first =
+      polish(initial_sketch(points, world.footprint, options), world, options.polish);
+  const Sketch chosen = select_strokes(first, world, options.select).sketch;
+  report->counts.push_back({"strokes_lifted", double(first.size())});
+  stage.result(std::to_string(chosen.size()) + " of " + std::to_string(first.size()) +
+               " strokes stand");
+  return grown(chosen, world, options);
+}
+
+Round run_round(const Sketch& sketch, const EdgeWorld& world,
+                const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
+                RunReport* report, Progress* progress) {
+  Stage stage("round " + std::to_string(report->rounds.size() + 1), 0, report, progress);
+  const OptimizeResult moved = optimize(sketch, world, targets, options.optimize);
+  Numbers row = {{"splats", double(moved.splats)},
+                 {"loss_before", moved.initial_loss},
+                 {"loss_after", moved.final_loss},
+                 {"strokes_before", double(sketch.size())}};
+  Round round{moved.sketch, false};
+  if (options.simplify) {
+    TopologyOptions topology = options.topology;
+    topology.footprint = world.footprint;
+    const Simplified simpler = simplify(moved.sketch, topology);
+    for (const auto& [name, count] : simpler.counts.named()) row.push_back({name, double(count)});
+    round.changed = simpler.counts.total() > 0;
+    const PassResult chosen =
+        select_strokes(grown(simpler.sketch, world, options), world, options.select);
+    row.push_back({"unexplaining", double(chosen.changes)});
+    round.changed |= chosen.changes > 0;
+    round.sketch = chosen.sketch;
+  }
+  row.push_back({"strokes", double(round.sketch.size())});
+  stage.result(std::to_string(round.sketch.size()) + " strokes");
+  report->rounds.push_back(std::move(row));
+  return round;
+}
+
+Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
+                     const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  Stage stage("polish", 0, report, progress);
+  Sketch out = options.final_polish ? polish(sketch, world, options.polish) : sketch;
+  MatchOptions match;
+  match.reach_px = 1.0;
+  const Observation o =
+      observe(out, world, match, options.polish.spacing_px, options.select.min_views);
+  record_evidence(o, &out);
+  report->counts.push_back({"strokes", double(out.size())});
+  report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
+  stage.result(std::to_string(out.size()) + " strokes");
+  return out;
+}
+
+}  // namespace sketchsplat

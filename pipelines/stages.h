@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "datasets/scene.h"
+#include "edges/lift.h"
+#include "pipelines/optimize.h"
+#include "pipelines/options.h"
+#include "pipelines/run_report.h"
+
+namespace sketchsplat {
+
+/// Reads every image (or somebody's edge map of it) and finds its edgels. Frames that cannot be
+/// read are left out with a warning. Throws TooLittleError if fewer than three views hold edges,
+/// InputError if no image, or no map of that name, can be read.
+EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
+                       Progress* progress);
+
+/// Edgels of one view by the detector: "image" or "maps:NAME". Throws InputError. Fills width and
+/// height of the view's camera.
+EdgelMap detect_view(const Scene& scene, const std::string& detector, const DetectOptions& detect,
+                     const MapOptions& maps, View* view);
+
+/// The space sweep over all edgels. Throws TooLittleError if no point is found.
+std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
+                                  RunReport* report, Progress* progress);
+
+/// Strokes from lifted points: linked to chains, cut into the simplest curves, moved onto the
+/// edgels, chosen by what they explain, and as long as the views see them.
+Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
+                   const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// One round: strokes are drawn and moved (optimize), weighed, and the graph is simplified.
+struct Round {
+  Sketch sketch;
+  bool changed = false;  ///< the graph did; positions always do
+};
+Round run_round(const Sketch& sketch, const EdgeWorld& world,
+                const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
+                RunReport* report, Progress* progress);
+
+/// Last polish on the edgels, last choice, and the evidence that is written with the sketch.
+Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
+                     const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+}  // namespace sketchsplat

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "raster/tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+// The loops are written over fixed groups of 8 floats, so that the order of every sum, and with it
+// every byte, is the same for all instruction sets; the compiler makes one version for each.
+#if defined(__x86_64__) && defined(__linux__)
+#define SKETCHSPLAT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define SKETCHSPLAT_CLONES
+#endif
+#define SKETCHSPLAT_INLINE inline __attribute__((always_inline))
+
+namespace sketchsplat {
+namespace {
+
+constexpr int kLanes = Tile::kSide;
+typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
+typedef std::int32_t IntLanes __attribute__((vector_size(kLanes * sizeof(float))));
+constexpr Lanes kIota = {0, 1, 2, 3, 4, 5, 6, 7};
+constexpr float kLog2E = 1.44269504f;
+
+// 2^x for x in [-125, 0], relative error below 2e-7: 2^round(x) through the exponent bits times the
+// Taylor polynomial of degree 6 on [-1/2, 1/2]. F is float or Lanes, I the integer of that size.
+template <typename F, typename I>
+SKETCHSPLAT_INLINE void exp2_of(const F& x, F* result) {
+  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: the sum has the integer in its low bits
+  const F shifted = x + kRound;
+  const F f = x - (shifted - kRound);
+  F p = f * 1.5403530e-4f + 1.3333558e-3f;
+  p = p * f + 9.6181291e-3f;
+  p = p * f + 5.5504109e-2f;
+  p = p * f + 2.4022651e-1f;
+  p = p * f + 6.9314718e-1f;
+  p = p * f + 1.0f;
+  I bits;
+  std::memcpy(&bits, &shifted, sizeof(bits));
+  bits = (bits + 127) << 23;
+  F power;
+  std::memcpy(&power, &bits, sizeof(power));
+  *result = p * power;
+}
+
+// k(q) of RasterOptions in terms of r = q log2(e) / 2, so that exp(-q/2) = 2^-r, and its scale.
+struct Profile {
+  float r_max;   // r at the rim
+  float rim;     // exp(-Q/2)
+  float c0, c1;  // k = (2^-r - c0 + c1 r) * scale, dk/dq = -(2^-r - rim) * scale / 2
+  double scale;
+  double whiten;  // footprint's U times this gives r = |U d|^2
+
+  explicit Profile(double cutoff) {
+    const double half = cutoff * cutoff / 2, e = std::exp(-half), log2e = 1 / std::log(2.0);
+    r_max = float(half * log2e);
+    rim = float(e);
+    c0 = float(e * (1 + half));
+    c1 = float(e / log2e);
+    scale = 1 / (1 - e * (1 + half));
+    whiten = std::sqrt(log2e / 2);
+  }
+};
+
+// A footprint in the units of the inner loops.
+struct Pen {
+  float u00, u01, u11;
+  Pen(const Footprint& f, const Profile& profile)
+      : u00(float(f.u00 * profile.whiten)),
+        u01(float(f.u01 * profile.whiten)),
+        u11(float(f.u11 * profile.whiten)) {}
+};
+
+// The part of a footprint's box in one tile.
+struct Patch {
+  int slot;
+  float dx;       // of the tile's first column from the mean
+  int row, rows;  // first row in the tile, number of rows
+  double dy;      // of that first row from the mean
+};
+
+SKETCHSPLAT_INLINE Patch cut(const Footprint& f, int slot, int tx, int ty) {
+  const int top = std::max(f.y0, ty * Tile::kSide);
+  const int bottom = std::min(f.y1, ty * Tile::kSide + Tile::kSide - 1);
+  return {slot, float(tx * Tile::kSide - f.mean.x()), top - ty * Tile::kSide, bottom - top + 1,
+          top - f.mean.y()};
+}
+
+SKETCHSPLAT_INLINE void add_patch(const Patch& patch, const Pen& pen, const Profile& profile,
+                                  float peak, Tile* tile) {
+  const Lanes ux = (kIota + patch.dx) * pen.u00;
+  float* row = tile->value + patch.row * kLanes;
+  for (int k = 0; k < patch.rows; ++k, row += kLanes) {
+    const float dy = float(patch.dy + k);
+    const Lanes u = ux + pen.u01 * dy;
+    const float v = pen.u11 * dy;
+    Lanes r = u * u + v * v;
+    r = r < profile.r_max ? r : Lanes{} + profile.r_max;
+    Lanes e;
+    exp2_of<Lanes, IntLanes>(-r, &e);
+    Lanes depth;
+    std::memcpy(&depth, row, sizeof(depth));
+    depth += peak * (e - profile.c0 + profile.c1 * r);
+    std::memcpy(row, &depth, sizeof(depth));
+  }
+}
+
+SKETCHSPLAT_CLONES
+void add_all(const Footprint* footprints, size_t count, const Profile& profile,
+             TouchedTiles* tiles) {
+  for (size_t i = 0; i < count; ++i) {
+    const Footprint& f = footprints[i];
+    const Pen pen(f, profile);
+    const float peak = float(f.peak * profile.scale);
+    for (int ty = f.y0 / Tile::kSide; ty <= f.y1 / Tile::kSide; ++ty) {
+      for (int tx = f.x0 / Tile::kSide; tx <= f.x1 / Tile::kSide; ++tx) {
+        const int slot = tiles->slot[ty * tiles->tiles_x + tx];
+        add_patch(cut(f, slot, tx, ty), pen, profile, peak, &tiles->tiles[slot]);
+      }
+    }
+  }
+}
+
+// Sums over the pixels of a footprint of G k, G h, G h u, ... with G = dL/dtau, h = 2^-r - rim.
+struct Moments {
+  Lanes k = {}, u = {}, v = {}, uu = {}, uv = {}, vv = {};
+};
+
+SKETCHSPLAT_INLINE void add_moments(const Patch& patch, const Pen& pen, const Profile& profile,
+                                    const Tile& tile, Moments* m) {
+  const Lanes ux = (kIota + patch.dx) * pen.u00;
+  const float* row = tile.value + patch.row * kLanes;
+  for (int k = 0; k < patch.rows; ++k, row += kLanes) {
+    const float dy = float(patch.dy + k);
+    const Lanes u = ux + pen.u01 * dy;
+    const float v = pen.u11 * dy;
+    Lanes r = u * u + v * v;
+    r = r < profile.r_max ? r : Lanes{} + profile.r_max;
+    Lanes e, G;
+    exp2_of<Lanes, IntLanes>(-r, &e);
+    std::memcpy(&G, row, sizeof(G));
+    m->k += G * (e - profile.c0 + profile.c1 * r);
+    const Lanes w = G * (e - profile.rim);
+    const Lanes wu = w * u, wv = w * v;
+    m->u += wu;
+    m->v += wv;
+    m->uu += wu * u;
+    m->uv += wu * v;
+    m->vv += wv * v;
+  }
+}
+
+SKETCHSPLAT_INLINE double sum(const Lanes& x) {
+  return double((x[0] + x[4]) + (x[2] + x[6])) + double((x[1] + x[5]) + (x[3] + x[7]));
+}
+
+// With U the whitening matrix, z = U d: dq/dmean = -2 U^T z, dq/dS = -U^T z z^T U.
+SKETCHSPLAT_INLINE void finish(const Moments& m, const Footprint& f, const Profile& profile,
+                               FootprintGradient* g) {
+  const double first = f.peak * profile.scale / profile.whiten;
+  const double second = first / (2 * profile.whiten);
+  const double u = first * sum(m.u), v = first * sum(m.v);
+  const double uu = second * sum(m.uu), uv = second * sum(m.uv), vv = second * sum(m.vv);
+  g->peak = profile.scale * sum(m.k);
+  g->mean = {f.u00 * u, f.u01 * u + f.u11 * v};
+  g->covariance(0, 0) = f.u00 * f.u00 * uu;
+  g->covariance(0, 1) = g->covariance(1, 0) = f.u00 * (f.u01 * uu + f.u11 * uv);
+  g->covariance(1, 1) = f.u01 * f.u01 * uu + 2 * f.u01 * f.u11 * uv + f.u11 * f.u11 * vv;
+}
+
+SKETCHSPLAT_CLONES
+void gather_all(const Footprint* footprints, size_t count, const Profile& profile,
+                const TouchedTiles& tiles, FootprintGradient* gradients) {
+  for (size_t i = 0; i < count; ++i) {
+    const Footprint& f = footprints[i];
+    const Pen pen(f, profile);
+    Moments m;
+    for (int ty = f.y0 / Tile::kSide; ty <= f.y1 / Tile::kSide; ++ty) {
+      for (int tx = f.x0 / Tile::kSide; tx <= f.x1 / Tile::kSide; ++tx) {
+        const int slot = tiles.slot[ty * tiles.tiles_x + tx];
+        add_moments(cut(f, slot, tx, ty), pen, profile, tiles.tiles[slot], &m);
+      }
+    }
+    finish(m, f, profile, &gradients[i]);
+  }
+}
+
+// exp(-depth), 0 < result <= 1.
+SKETCHSPLAT_INLINE float transmittance(float depth) {
+  float t;
+  exp2_of<float, std::int32_t>(-std::min(depth, 80.0f) * kLog2E, &t);
+  return t;
+}
+
+SKETCHSPLAT_CLONES
+void expose_all(Tile* tiles, size_t count) {
+  for (size_t s = 0; s < count; ++s) {
+    for (float& value : tiles[s].value) value = 1 - transmittance(value);
+  }
+}
+
+// Loss in excess of the empty picture's, per pixel; tile: optical depth -> derivative by it.
+// rho(I - E) - rho(-E) is I (I - 2E) / 2 or I (I - 2E) / (sum of the roots): nothing cancels.
+template <bool kSquared>
+SKETCHSPLAT_INLINE void compare_tile(const Tile& edges, float edge_weight, float background_weight,
+                                     float softness2, Tile* tile, float* excess) {
+  for (int k = 0; k < Tile::kPixels; ++k) {
+    const float E = edges.value[k], t = transmittance(tile->value[k]), I = 1 - t, r = I - E;
+    const float weight = background_weight + (edge_weight - background_weight) * E;
+    const float w = E >= 0 ? weight : 0.0f;
+    const float change = w * I * (I - 2 * E);
+    if (kSquared) {
+      excess[k] = 0.5f * change;
+      tile->value[k] = w * r * t;
+    } else {
+      const float root = std::sqrt(r * r + softness2);
+      excess[k] = change / (root + std::sqrt(E * E + softness2));
+      tile->value[k] = w * r * t / root;
+    }
+  }
+}
+
+SKETCHSPLAT_CLONES
+double compare_all(const EdgeTarget& target, TouchedTiles* by_depth) {
+  const LossOptions& o = target.options;
+  const float ew = float(o.edge_weight), bw = float(o.background_weight);
+  const float softness2 = float(o.softness * o.softness);
+  double total = 0;
+  alignas(64) float excess[Tile::kPixels];
+  for (size_t s = 0; s < by_depth->tiles.size(); ++s) {
+    const Tile& edges = target.tiles[target.tile_index[by_depth->touched[s]]];
+    if (o.kind == LossKind::kSquared) {
+      compare_tile<true>(edges, ew, bw, softness2, &by_depth->tiles[s], excess);
+    } else {
+      compare_tile<false>(edges, ew, bw, softness2, &by_depth->tiles[s], excess);
+    }
+    Lanes partial = {}, row;
+    for (int k = 0; k < Tile::kPixels; k += kLanes) {
+      std::memcpy(&row, excess + k, sizeof(row));
+      partial += row;
+    }
+    total += sum(partial);
+  }
+  return total;
+}
+
+}  // namespace
+
+TouchedTiles accumulate_depth(const Camera& camera, const std::vector<Footprint>& footprints,
+                              const RasterOptions& options) {
+  TouchedTiles t;
+  t.tiles_x = (camera.width + Tile::kSide - 1) / Tile::kSide;
+  t.tiles_y = (camera.height + Tile::kSide - 1) / Tile::kSide;
+  t.slot.assign(size_t(t.tiles_x) * t.tiles_y, -1);
+  for (const Footprint& f : footprints) {
+    for (int ty = f.y0 / Tile::kSide; ty <= f.y1 / Tile::kSide; ++ty) {
+      for (int tx = f.x0 / Tile::kSide; tx <= f.x1 / Tile::kSide; ++tx) {
+        int& slot = t.slot[ty * t.tiles_x + tx];
+        if (slot >= 0) continue;
+        slot = int(t.touched.size());
+        t.touched.push_back(ty * t.tiles_x + tx);
+      }
+    }
+  }
+  t.tiles.assign(t.touched.size(), Tile{});
+  add_all(footprints.data(), footprints.size(), Profile(options.cutoff), &t);
+  return t;
+}
+
+void expose(TouchedTiles* tiles) { expose_all(tiles->tiles.data(), tiles->tiles.size()); }
+
+double compare(const EdgeTarget& target, TouchedTiles* by_depth) {
+  return target.empty_loss + compare_all(target, by_depth);
+}
+
+std::vector<FootprintGradient> gather_gradients(const TouchedTiles& by_depth,
+                                                const std::vector<Footprint>& footprints,
+                                                const RasterOptions& options) {
+  std::vector<FootprintGradient> gradients(footprints.size());
+  gather_all(footprints.data(), footprints.size(), Profile(options.cutoff), by_depth,
+             gradients.data());
+  return gradients;
+}
+
+}  // namespace sketchsplat

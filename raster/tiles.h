@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "raster/loss.h"
+#include "raster/project.h"
+
+namespace sketchsplat {
+
+/// The tiles of an image that splats touch, and one value per pixel of them.
+struct TouchedTiles {
+  int tiles_x = 0, tiles_y = 0;
+  std::vector<int> slot;     ///< tiles_x * tiles_y: index into tiles, or -1
+  std::vector<int> touched;  ///< which tile tiles[s] is, ty * tiles_x + tx
+  std::vector<Tile> tiles;
+};
+
+/// All tiles under the boxes of the footprints, in order of first touch, filled with the optical
+/// depth sum_i tau_i (summed in the order of the footprints).
+TouchedTiles accumulate_depth(const Camera& camera, const std::vector<Footprint>& footprints,
+                              const RasterOptions& options);
+
+/// Optical depth to grey value 1 - exp(-tau), in place.
+void expose(TouchedTiles* tiles);
+
+/// Loss of the picture that has these optical depths, and 0 where no tile is. The optical depths
+/// are replaced by the derivatives of the loss by them.
+double compare(const EdgeTarget& target, TouchedTiles* by_depth);
+
+/// Gradient by the footprints, given that by the optical depths.
+std::vector<FootprintGradient> gather_gradients(const TouchedTiles& by_depth,
+                                                const std::vector<Footprint>& footprints,
+                                                const RasterOptions& options);
+
+}  // namespace sketchsplat

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "edges/lift.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "edges/link.h"
+#include "edges/match.h"
+#include "tests/support/wireframe.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+const Eigen::Vector3d kMiddle(0.5, 0.5, 0.5);
+
+TEST(EdgeWorld, BoundsHoldTheObjectTightly) {
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), cube_edges({0.1, 0.1, 0.1}, 0.8));
+  EXPECT_TRUE((w.bounds.min().array() <= 0.1).all());
+  EXPECT_TRUE((w.bounds.max().array() >= 0.9).all());
+  EXPECT_LT(w.bounds.sizes().maxCoeff(), 1.2);
+  EXPECT_NEAR(w.footprint, 3.0 / 500, 1e-4);
+}
+
+TEST(EdgeWorld, ViewsWithoutEdgelsDoNotVote) {
+  std::vector<View> views = ring_of_views(12, kMiddle, 3);
+  std::vector<EdgelMap> maps;
+  for (const View& v : views) maps.push_back(ideal_edgels(v, cube_edges({0.1, 0.1, 0.1}, 0.8)));
+  maps[3] = EdgelMap();
+  EXPECT_FALSE(make_edge_world(views, maps).bounds.isEmpty());
+}
+
+TEST(Lift, PointsOfACubeLieOnItsEdgesToATenthOfAPixel) {
+  const std::vector<Polyline> curves = cube_edges({0.1, 0.1, 0.1}, 0.8);
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), curves);
+  const std::vector<EdgePoint> points = lift_edges(w, {});
+  ASSERT_GE(points.size(), 200u);
+  int good = 0;
+  for (const EdgePoint& p : points) good += distance_to(curves, p.position) < 0.1 * w.footprint;
+  EXPECT_GE(good, int(0.97 * points.size()));
+  for (const Polyline& c : curves) {  // every edge is covered
+    int on = 0;
+    for (const EdgePoint& p : points) on += distance_to({c}, p.position) < w.footprint;
+    EXPECT_GE(on, 15);
+  }
+}
+
+TEST(Lift, TangentsFollowACircle) {
+  const std::vector<Polyline> curves = {
+      circle(kMiddle, Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0, 0.3, 0))};
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), curves);
+  const std::vector<EdgePoint> points = lift_edges(w, {});
+  ASSERT_GE(points.size(), 50u);
+  for (const EdgePoint& p : points) {
+    const Eigen::Vector3d radius = (p.position - kMiddle).normalized();
+    EXPECT_NEAR(p.tangent.norm(), 1, 1e-9);
+    EXPECT_LT(std::abs(p.tangent.dot(radius)), 0.1);
+  }
+}
+
+TEST(Lift, SameForOneAndTwoThreads) {
+  const EdgeWorld w = ideal_world(ring_of_views(12, kMiddle, 3), cube_edges({0.1, 0.1, 0.1}, 0.8));
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const std::vector<EdgePoint> one = lift_edges(w, {});
+  omp_set_num_threads(2);
+  const std::vector<EdgePoint> two = lift_edges(w, {});
+  omp_set_num_threads(before);
+  ASSERT_EQ(one.size(), two.size());
+  for (size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].position, two[i].position);
+    EXPECT_EQ(one[i].tangent, two[i].tangent);
+  }
+}
+
+TEST(Lift, ResultScalesWithTheUnitOfTheScene) {
+  for (double unit : {1e-3, 1e3}) {
+    const EdgeWorld w = ideal_world(ring_of_views(12, unit * kMiddle, 3 * unit),
+                                    cube_edges({0.1 * unit, 0.1 * unit, 0.1 * unit}, 0.8 * unit));
+    const EdgeWorld w1 =
+        ideal_world(ring_of_views(12, kMiddle, 3), cube_edges({0.1, 0.1, 0.1}, 0.8));
+    const double ratio = double(lift_edges(w, {}).size()) / double(lift_edges(w1, {}).size());
+    EXPECT_NEAR(ratio, 1, 0.02);
+    EXPECT_NEAR(w.footprint / unit, w1.footprint, 1e-9);
+  }
+}
+
+TEST(Lift, NothingToSeeGivesNoPoints) {
+  EXPECT_TRUE(lift_edges(make_edge_world({}, {}), {}).empty());
+  const std::vector<View> views = ring_of_views(5, kMiddle, 3);
+  EXPECT_TRUE(lift_edges(make_edge_world(views, std::vector<EdgelMap>(5)), {}).empty());
+}
+
+TEST(Lift, AContourThatMovesWithTheViewIsNotLiftedByManyViews) {
+  // The outline of a sphere: a circle that faces every camera, another one for each.
+  std::vector<View> views = ring_of_views(30, kMiddle, 3);
+  std::vector<EdgelMap> maps;
+  for (const View& v : views) {
+    const Eigen::Vector3d right = v.cam_from_world.rotation.row(0),
+                          up = v.cam_from_world.rotation.row(1);
+    maps.push_back(ideal_edgels(v, {circle(kMiddle, 0.3 * right, 0.3 * up)}));
+  }
+  const EdgeWorld w = make_edge_world(views, maps);
+  for (const EdgePoint& p : lift_edges(w, {})) EXPECT_LE(p.views, 12);
+}
+
+TEST(Link, ACubeBecomesTwelveRunsOrFewer) {
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), cube_edges({0.1, 0.1, 0.1}, 0.8));
+  const std::vector<EdgePoint> thin = thin_points(lift_edges(w, {}), w.footprint, {});
+  size_t linked = 0;
+  int long_runs = 0;
+  for (const PointChain& c : link_points(thin, w.footprint, {})) {
+    linked += c.points.size();
+    long_runs += c.points.size() >= 12;
+  }
+  EXPECT_GE(linked, size_t(0.95 * thin.size()));
+  EXPECT_LE(long_runs, 14);
+  EXPECT_GE(long_runs, 3);
+}
+
+TEST(Link, ACircleIsOneClosedRun) {
+  const EdgeWorld w =
+      ideal_world(ring_of_views(20, kMiddle, 3),
+                  {circle(kMiddle, Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0, 0.3, 0))});
+  const std::vector<PointChain> chains =
+      link_points(thin_points(lift_edges(w, {}), w.footprint, {}), w.footprint, {});
+  ASSERT_FALSE(chains.empty());
+  size_t longest = 0;
+  for (size_t i = 1; i < chains.size(); ++i)
+    if (chains[i].points.size() > chains[longest].points.size()) longest = i;
+  EXPECT_TRUE(chains[longest].closed);
+}
+
+TEST(Link, PointsInOnePlaceAndLonePointsDoNoHarm) {
+  EXPECT_TRUE(link_points({}, 1, {}).empty());
+  EXPECT_TRUE(thin_points({}, 1, {}).empty());
+  EdgePoint p;
+  p.tangent = Eigen::Vector3d::UnitX();
+  EXPECT_TRUE(link_points({p}, 1, {}).empty());
+  EXPECT_EQ(thin_points({p, p, p}, 1, {}).size(), 1u);
+  EXPECT_TRUE(link_points({p, p}, 1, {}).empty());
+}
+
+CurvePoints line_samples(const Eigen::Vector3d& a, const Eigen::Vector3d& b, int n) {
+  CurvePoints s;
+  s.position.resize(3, n), s.tangent.resize(3, n);
+  for (int i = 0; i < n; ++i) {
+    s.position.col(i) = a + (b - a) * (i + 0.5) / n;
+    s.tangent.col(i) = (b - a).normalized();
+  }
+  s.first = {0, n};
+  return s;
+}
+
+TEST(Match, QuadraticTellsTheOffsetOfALineAcrossIt) {
+  const Eigen::Vector3d a(0.1, 0.4, 0.5), b(0.9, 0.4, 0.5), offset(0, 0.002, -0.001);
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), {segment(a, b)});
+  const Matches m = match_samples(w, line_samples(a + offset, b + offset, 40), {});
+  for (int i = 5; i < 35; ++i) {
+    ASSERT_GE(m.views_of(i), 10);
+    const Eigen::Matrix3d H = m.information[i] + 1e-3 * m.information[i].trace() *
+                                                     Eigen::Vector3d::UnitX() *
+                                                     Eigen::RowVector3d::UnitX();
+    const Eigen::Vector3d move = -H.ldlt().solve(Eigen::Vector3d(m.slope.col(i)));
+    EXPECT_LT((move + offset).norm(), 2e-4);
+  }
+}
+
+TEST(Match, AnEdgelBelongsToTheNearerOfTwoLinesFourPixelsApart) {
+  const double gap = 4 * 3.0 / 500;
+  const Eigen::Vector3d a(0.1, 0.5, 0.5), b(0.9, 0.5, 0.5), up(0, gap, 0);
+  const EdgeWorld w =
+      ideal_world(ring_of_views(20, kMiddle, 3), {segment(a, b), segment(a + up, b + up)});
+  CurvePoints both = line_samples(a, b, 30);
+  const CurvePoints second = line_samples(a + up, b + up, 30);
+  both.position.conservativeResize(3, 60), both.tangent.conservativeResize(3, 60);
+  both.position.rightCols(30) = second.position, both.tangent.rightCols(30) = second.tangent;
+  both.first = {0, 30, 60};
+  const Matches m = match_samples(w, both, {});
+  // In a view or two the lines project into the same pixels; everywhere else nothing is mixed up.
+  size_t own = 0;
+  for (const SampleMatch& s : m.matches) own += std::abs(s.distance_px) < 0.05;
+  EXPECT_GT(m.matches.size(), 600u);
+  EXPECT_GT(own, size_t(0.95 * m.matches.size()));
+}
+
+TEST(Match, SamplesBehindTheCameraOutsideOrNowhereMatchNothing) {
+  const EdgeWorld w =
+      ideal_world(ring_of_views(4, kMiddle, 3), {segment({0.1, 0.5, 0.5}, {0.9, 0.5, 0.5})});
+  EXPECT_TRUE(match_samples(w, line_samples({50, 50, 50}, {51, 50, 50}, 5), {}).matches.empty());
+  CurvePoints none;
+  none.first = {0};
+  none.position.resize(3, 0), none.tangent.resize(3, 0);
+  EXPECT_TRUE(match_samples(w, none, {}).matches.empty());
+  CurvePoints nan = line_samples({0.1, 0.5, 0.5}, {0.9, 0.5, 0.5}, 5);
+  nan.position.setConstant(std::nan(""));
+  EXPECT_TRUE(match_samples(w, nan, {}).matches.empty());
+}
+
+}  // namespace
+}  // namespace sketchsplat

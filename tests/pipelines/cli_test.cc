@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+// The program as its users meet it: a binary, its streams and its exit status.
+#include "pipelines/cli.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+
+#include "datasets/scene.h"
+
+namespace sketchsplat {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+std::string text_of_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+int count_lines(const std::string& text) { return int(std::count(text.begin(), text.end(), '\n')); }
+
+class Program : public testing::Test {
+ protected:
+  Program() : folder_(fs::temp_directory_path() / ("sketchsplat." + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~Program() override { fs::remove_all(folder_); }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = std::string("'") + SKETCHSPLAT_BINARY + "' " + arguments + " >'" +
+                                (folder_ / "out").string() + "' 2>'" + (folder_ / "err").string() +
+                                "' </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of_file(folder_ / "out"),
+            text_of_file(folder_ / "err")};
+  }
+
+  // Two views of a white square on black.
+  std::string scene() const {
+    const fs::path scene = folder_ / "scene";
+    fs::create_directories(scene / "color");
+    Image<float> image(64, 48, 0.0f);
+    for (int y = 12; y < 36; ++y)
+      for (int x = 16; x < 48; ++x) image.at(x, y) = 1;
+    std::ofstream json(scene / "meta_data.json");
+    json << R"({"camera_model": "OPENCV", "height": 48, "width": 64, "frames": [)";
+    for (int k = 0; k < 2; ++k) {
+      const std::string name = std::to_string(k) + "_colors.png";
+      write_png((scene / "color" / name).string(), image);
+      json << (k ? "," : "") << R"({"rgb_path": ")" << name << R"(", "camtoworld": [[1,0,0,)" << k
+           << R"(],[0,1,0,0],[0,0,1,-4],[0,0,0,1]],)"
+           << R"("intrinsics": [[90,0,31.5],[0,90,23.5],[0,0,1]]})";
+    }
+    json << "]}";
+    return scene.string();
+  }
+
+  std::string in_folder(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+std::vector<std::string> verbs_in(const std::string& help) {
+  std::vector<std::string> verbs;
+  std::istringstream lines(help.substr(help.find("Verbs:\n") + 7));
+  std::string line;
+  while (std::getline(lines, line) && !line.empty())
+    if (std::isalpha(line[2])) verbs.push_back(line.substr(2, line.find(' ', 2) - 2));
+  return verbs;
+}
+
+TEST_F(Program, TellsItsVersion) {
+  const Outcome o = run("--version");
+  EXPECT_EQ(o.status, 0);
+  EXPECT_EQ(o.out, "sketchsplat " SKETCHSPLAT_VERSION "\n");
+  EXPECT_EQ(o.err, "");
+}
+
+TEST_F(Program, HelpBeginsWithExamples) {
+  for (const char* arguments :
+       {"--help", "-h", "help", "detect --help", "help detect", "-h detect"}) {
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.status, 0) << arguments;
+    EXPECT_THAT(o.out, StartsWith("Examples:\n  sketchsplat ")) << arguments;
+    EXPECT_EQ(o.err, "") << arguments;
+  }
+}
+
+TEST_F(Program, EveryExampleInTheHelpOfAVerbParses) {
+  const std::regex example("  sketchsplat ([^\n]*)\n");
+  for (const std::string& verb : verbs_in(run("--help").out)) {
+    const std::string help = run(verb + " --help").out;
+    const std::string block = help.substr(0, help.find("\n\n") + 1);
+    int found = 0;
+    for (std::sregex_iterator it(block.begin(), block.end(), example), end; it != end; ++it) {
+      // The folders of the examples do not exist here: anything but wrong usage will do.
+      ++found;
+      if (verb == "synthesize") continue;  // would do its work
+      EXPECT_NE(run((*it)[1]).status, kWrongUsage) << (*it)[1];
+    }
+    EXPECT_GT(found, 0) << verb;
+  }
+}
+
+TEST_F(Program, HelpListsEveryOptionWithItsDefault) {
+  EXPECT_FALSE(verbs_in(run("--help").out).empty());
+  CommonOptions common;
+  Fields fields;
+  list_fields(&common, &fields);
+  DetectOptions detect;
+  list_fields(&detect, &fields);
+  const std::string help = run("detect --help").out;
+  for (const Field& field : fields.list) {
+    EXPECT_THAT(help, HasSubstr("--" + field.name));
+    EXPECT_THAT(help, HasSubstr(field.help)) << field.name;
+    EXPECT_THAT(help, HasSubstr(facts(field))) << field.name;
+    EXPECT_THAT(facts(field), HasSubstr("default")) << field.name;
+  }
+}
+
+TEST_F(Program, NoLineOfHelpIsWiderThanAPage) {
+  for (const std::string& verb : verbs_in(run("--help").out)) {
+    std::istringstream lines(run(verb + " --help").out);
+    std::string line;
+    while (std::getline(lines, line)) EXPECT_LE(line.size(), 110u) << line;
+  }
+}
+
+TEST_F(Program, WrongUsageIsOneSentenceAndStatus2) {
+  for (const char* arguments :
+       {"", "detekt", "--frobnicate", "detect", "detect scene", "detect --out x",
+        "detect scene --out x --frobnicate", "detect scene --out x --detect-sigma",
+        "detect scene --out x --detect-sigma 99", "detect scene --out x --detect-sigma nan",
+        "detect scene --out x --threads many", "detect scene --out x --threads -1",
+        "detect scene another --out x", "detect scene --out ''", "detect '' --out x",
+        "detect scene --out x --format jpeg", "--seed", "--seed 1.5 detect scene --out x"}) {
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.status, kWrongUsage) << arguments;
+    EXPECT_EQ(o.out, "") << arguments;
+    EXPECT_EQ(count_lines(o.err), 1) << arguments << "\n" << o.err;
+    EXPECT_THAT(o.err, StartsWith("sketchsplat: ")) << arguments;
+  }
+}
+
+TEST_F(Program, RefusalNamesOptionRangeAndValue) {
+  EXPECT_EQ(run("detect scene --out x --detect-sigma 99").err,
+            "sketchsplat: --detect-sigma: expected a number from 0.3 to 5 px, got '99'\n");
+}
+
+TEST_F(Program, TyposGetAHint) {
+  EXPECT_THAT(run("detct").err, HasSubstr("did you mean detect?"));
+  EXPECT_THAT(run("detect scene --out x --treads 2").err, HasSubstr("did you mean --threads?"));
+}
+
+TEST_F(Program, MissingSceneIsNamedWithStatus3AndNothingIsMade) {
+  const Outcome o = run("detect " + in_folder("nowhere") + " --out " + in_folder("result"));
+  EXPECT_EQ(o.status, kBadInput);
+  EXPECT_EQ(count_lines(o.err), 1) << o.err;
+  EXPECT_THAT(o.err, HasSubstr(in_folder("nowhere") + ": expected "));
+  EXPECT_EQ(o.out, "");
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+}
+
+TEST_F(Program, FolderWithoutASceneIsStatus3) {
+  fs::create_directories(folder_ / "empty");
+  EXPECT_EQ(run("detect " + in_folder("empty") + " --out " + in_folder("result")).status,
+            kBadInput);
+}
+
+TEST_F(Program, OutputThatCannotBeWrittenIsStatus5) {
+  std::ofstream(folder_ / "file") << "x";
+  for (const std::string& out :
+       {in_folder("file"), in_folder("file") + "/below", std::string("/proc/sketchsplat")}) {
+    const Outcome o = run("detect " + scene() + " --out " + out);
+    EXPECT_EQ(o.status, kNoOutput) << out;
+    EXPECT_EQ(count_lines(o.err), 1) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(out));
+  }
+}
+
+TEST_F(Program, StandardOutputThatIsFullIsStatus5) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  const std::string command =
+      std::string("'") + SKETCHSPLAT_BINARY + "' --help >/dev/full 2>/dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), kNoOutput);
+}
+
+TEST_F(Program, DetectWritesAMapPerViewWithTheImagesName) {
+  const Outcome o = run("detect " + scene() + " -o " + in_folder("result"));
+  ASSERT_EQ(o.status, 0) << o.err;
+  for (const char* name : {"0_colors.png", "1_colors.png"}) {
+    const Image<float> map = read_grey(in_folder("result/edge_image/") + name);
+    ASSERT_EQ(map.width, 64);
+    ASSERT_EQ(map.height, 48);
+    EXPECT_GT(map.at(16, 24), 0.3f) << "the left side of the square";
+    EXPECT_EQ(map.at(32, 24), 0) << "its middle";
+  }
+}
+
+TEST_F(Program, BrokenImageIsLeftOutWithAWarningThatNamesIt) {
+  const std::string scene_folder = scene();
+  std::ofstream(scene_folder + "/color/1_colors.png") << "no image";
+  const Outcome o = run("detect " + scene_folder + " --out " + in_folder("result"));
+  EXPECT_EQ(o.status, 0);
+  EXPECT_THAT(o.err, HasSubstr("1_colors.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "result/edge_image/0_colors.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "result/edge_image/1_colors.png"));
+  std::ofstream(scene_folder + "/color/0_colors.png") << "no image either";
+  EXPECT_EQ(run("detect " + scene_folder + " --out " + in_folder("result")).status, kBadInput);
+}
+
+TEST_F(Program, OnlyResultsGoToStandardOutputAndQuietSilencesTheRest) {
+  const std::string work = "detect " + scene() + " --out " + in_folder("result");
+  const Outcome plain = run(work);
+  EXPECT_EQ(plain.out, in_folder("result") + "/edge_image: 2 edge maps\n");
+  EXPECT_THAT(plain.err, HasSubstr("detect"));
+  EXPECT_THAT(plain.err, Not(HasSubstr("\r"))) << "no bar where there is no terminal";
+  for (const std::string& quiet : {work + " --quiet", "-q " + work, "--quiet " + work}) {
+    const Outcome o = run(quiet);
+    EXPECT_EQ(o.status, 0) << quiet;
+    EXPECT_EQ(o.err, "") << quiet;
+    EXPECT_EQ(o.out, plain.out) << quiet;
+  }
+}
+
+TEST_F(Program, MapsAreTheSameForAnyNumberOfThreads) {
+  const std::string scene_folder = scene();
+  run("detect " + scene_folder + " --threads 1 --out " + in_folder("one"));
+  run("detect " + scene_folder + " --threads 3 --out " + in_folder("three"));
+  const std::string one = text_of_file(folder_ / "one/edge_image/0_colors.png");
+  EXPECT_FALSE(one.empty());
+  EXPECT_TRUE(one == text_of_file(folder_ / "three/edge_image/0_colors.png"));
+}
+
+TEST_F(Program, ReadmeShowsTheOptionsAsTheyAre) {
+  const std::string readme = text_of_file(fs::path(SKETCHSPLAT_SOURCE_DIR) / "README.md");
+  EXPECT_THAT(readme, HasSubstr(run("--options-markdown").out))
+      << "replace the tables of options in README.md by what --options-markdown prints";
+}
+
+}  // namespace
+}  // namespace sketchsplat

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "topology/refit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+struct Principal {
+  Vector3d mean;
+  Vector3d value;        // ascending, variance
+  Eigen::Matrix3d axis;  // columns
+};
+
+std::optional<Principal> principal(const Run& run) {
+  const double total = run.weight.sum();
+  if (!(total > 0)) return std::nullopt;
+  Principal p;
+  p.mean = run.position * run.weight / total;
+  const Eigen::Matrix3Xd centred = run.position.colwise() - p.mean;
+  const Eigen::Matrix3d scatter = centred * run.weight.asDiagonal() * centred.transpose() / total;
+  if (!scatter.allFinite() || !(scatter.trace() > 0)) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
+  p.value = solver.eigenvalues();
+  p.axis = solver.eigenvectors();
+  return p;
+}
+
+std::optional<PlainCurve> if_sound(const PlainCurve& c) {
+  return is_sound(c) ? std::optional<PlainCurve>(c) : std::nullopt;
+}
+
+// Circle in the plane: centre and radius from weighted points (2 x n) of unit spread.
+bool circle_in_plane(const Eigen::Matrix2Xd& q, const VectorXd& w, Vector3d* circle) {
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Vector3d b = Vector3d::Zero();
+  for (int k = 0; k < q.cols(); ++k) {
+    const Vector3d row(q(0, k), q(1, k), 1);
+    a += w[k] * row * row.transpose();
+    b += w[k] * row * q.col(k).squaredNorm();
+  }
+  const Vector3d s = a.ldlt().solve(b);
+  const double r2 = s[2] + 0.25 * s.head<2>().squaredNorm();
+  if (!s.allFinite() || !(r2 > 0)) return false;
+  *circle = Vector3d(s[0] / 2, s[1] / 2, std::sqrt(r2));
+  for (int it = 0; it < 10; ++it) {
+    a.setZero();
+    b.setZero();
+    for (int k = 0; k < q.cols(); ++k) {
+      const Eigen::Vector2d d = q.col(k) - circle->head<2>();
+      const double n = d.norm();
+      if (!(n > 0)) continue;
+      const Vector3d row(-d.x() / n, -d.y() / n, -1);
+      a += w[k] * row * row.transpose();
+      b -= w[k] * row * (n - (*circle)[2]);
+    }
+    const Vector3d step = a.ldlt().solve(b);
+    if (!step.allFinite() || !(step.norm() < (*circle)[2])) break;
+    *circle += step;
+    if (step.norm() < 1e-13 * (*circle)[2]) break;
+  }
+  return circle->allFinite() && (*circle)[2] > 0;
+}
+
+// Basis functions of the curves that are linear in their control points.
+VectorXd basis(StrokeKind kind, double t) {
+  const double s = 1 - t, a = 2 * M_PI * t;
+  if (kind == StrokeKind::kBezier)
+    return Eigen::Vector4d(s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t);
+  return Vector3d(1, std::cos(a), std::sin(a));
+}
+
+bool solve_controls(const Run& points, const VectorXd& t, PlainCurve* curve) {
+  const int n = curve->size();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n), b = Eigen::MatrixXd::Zero(n, 3);
+  for (int k = 0; k < t.size(); ++k) {
+    const VectorXd row = basis(curve->kind, t[k]);
+    a += points.weight[k] * row * row.transpose();
+    b += points.weight[k] * row * points.position.col(k).transpose();
+  }
+  const Eigen::MatrixXd x = a.ldlt().solve(b);
+  if (!x.allFinite()) return false;
+  for (int k = 0; k < n; ++k) curve->p[k] = x.row(k).transpose();
+  return true;
+}
+
+std::optional<PlainCurve> refit_linear(StrokeKind kind, const Run& points, VectorXd t) {
+  PlainCurve curve;
+  curve.kind = kind;
+  const auto spread = principal(points);
+  if (!spread) return std::nullopt;
+  // Centred and scaled to unit spread: the normal equations stay well conditioned at any scale.
+  const double scale = std::sqrt(spread->value[2]);
+  Run local = points;
+  local.position = (points.position.colwise() - spread->mean) / scale;
+  for (int it = 0; it < 16; ++it) {
+    if (kind == StrokeKind::kBezier) {
+      const double low = t.minCoeff(), high = t.maxCoeff();
+      if (!(high > low)) return std::nullopt;
+      t = (t.array() - low) / (high - low);
+    }
+    if (!solve_controls(local, t, &curve)) return std::nullopt;
+    for (int k = 0; k < t.size(); ++k) {
+      Vector3d p, d;
+      evaluate_curve<double>(kind, curve.p.data(), t[k], &p, &d);
+      if (!(d.squaredNorm() > 0)) continue;
+      const double step = (local.position.col(k) - p).dot(d) / d.squaredNorm();
+      t[k] += std::clamp(step, -0.1, 0.1);
+      if (kind == StrokeKind::kBezier) t[k] = std::clamp(t[k], 0.0, 1.0);
+    }
+  }
+  for (int k = 0; k < curve.size(); ++k) {
+    curve.p[k] *= scale;
+    if (kind == StrokeKind::kBezier || k == 0) curve.p[k] += spread->mean;
+  }
+  return if_sound(curve);
+}
+
+struct Interval {
+  double low, high;
+};
+
+// Start and end of the smallest piece of the circle that holds all intervals (angles, any branch).
+Interval cover(std::vector<Interval> parts) {
+  for (Interval& p : parts) {
+    const double shift = std::floor(p.low / (2 * M_PI)) * 2 * M_PI;
+    p.low -= shift;
+    p.high -= shift;
+  }
+  std::sort(parts.begin(), parts.end(), [](auto& a, auto& b) { return a.low < b.low; });
+  double reach = 0, widest = -1;
+  Interval out{0, 2 * M_PI};
+  for (const Interval& p : parts) reach = std::max(reach, p.high - 2 * M_PI);
+  for (const Interval& p : parts) {
+    if (p.low - reach > widest && p.low > reach) {
+      widest = p.low - reach;
+      out = {p.low, reach + 2 * M_PI};
+    }
+    reach = std::max(reach, p.high);
+  }
+  const double last = parts.front().low + 2 * M_PI - reach;
+  if (last > widest && last > 0) out = {parts.front().low, reach};
+  return out;
+}
+
+Interval turned_by(const Run& run, const Vector3d& centre, const Vector3d& x, const Vector3d& y) {
+  double angle = 0, low = 0, high = 0;
+  for (int k = 0; k < run.position.cols(); ++k) {
+    const Vector3d q = run.position.col(k) - centre;
+    const double a = std::atan2(q.dot(y), q.dot(x));
+    angle = k == 0 ? a : angle + std::remainder(a - angle, 2 * M_PI);
+    low = k == 0 ? a : std::min(low, angle);
+    high = k == 0 ? a : std::max(high, angle);
+  }
+  return {low, high};
+}
+
+}  // namespace
+
+Run joined(const std::vector<Run>& runs) {
+  int n = 0;
+  for (const Run& r : runs) n += int(r.weight.size());
+  Run out{Eigen::Matrix3Xd(3, n), VectorXd(n)};
+  n = 0;
+  for (const Run& r : runs) {
+    out.position.middleCols(n, r.weight.size()) = r.position;
+    out.weight.segment(n, r.weight.size()) = r.weight;
+    n += int(r.weight.size());
+  }
+  return out;
+}
+
+std::optional<PlainCurve> refit_line(const std::vector<Run>& runs) {
+  const Run all = joined(runs);
+  const auto p = principal(all);
+  if (!p) return std::nullopt;
+  const Vector3d axis = p->axis.col(2);
+  const VectorXd along = (all.position.colwise() - p->mean).transpose() * axis;
+  PlainCurve line;
+  line.p[0] = p->mean + axis * along.minCoeff();
+  line.p[1] = p->mean + axis * along.maxCoeff();
+  return if_sound(line);
+}
+
+std::optional<PlainCurve> refit_circle(const Run& points) {
+  const auto p = principal(points);
+  if (!p || !(p->value[1] > 1e-12 * p->value[2])) return std::nullopt;
+  const double scale = std::sqrt(p->value[2]);
+  const Eigen::Matrix3Xd centred = (points.position.colwise() - p->mean) / scale;
+  Eigen::Matrix2Xd q(2, centred.cols());
+  q.row(0) = p->axis.col(2).transpose() * centred;
+  q.row(1) = p->axis.col(1).transpose() * centred;
+  Vector3d circle;
+  if (!circle_in_plane(q, points.weight / points.weight.sum(), &circle)) return std::nullopt;
+  PlainCurve c;
+  c.kind = StrokeKind::kCircle;
+  c.p[0] = p->mean + scale * (p->axis.col(2) * circle[0] + p->axis.col(1) * circle[1]);
+  c.p[1] = p->axis.col(0) * (scale * circle[2]);
+  return if_sound(c);
+}
+
+std::optional<PlainCurve> refit_arc(const std::vector<Run>& runs, double closing) {
+  const auto circle = refit_circle(joined(runs));
+  if (!circle) return std::nullopt;
+  const double radius = circle->p[1].norm();
+  const Vector3d centre = circle->p[0];
+  Vector3d x, y;
+  frame_of<double>(circle->p[1] / radius, &x, &y);
+  std::vector<Interval> parts;
+  for (const Run& run : runs) {
+    parts.push_back(turned_by(run, centre, x, y));
+    if (!(parts.back().high - parts.back().low < 2 * M_PI)) return std::nullopt;
+  }
+  const Interval whole = cover(parts);
+  if ((2 * M_PI - (whole.high - whole.low)) * radius <= closing) return circle;
+  const auto at = [&](double a) {
+    return Vector3d(centre + radius * (x * std::cos(a) + y * std::sin(a)));
+  };
+  PlainCurve arc;
+  arc.kind = StrokeKind::kArc;
+  arc.p = {at(whole.low), at((whole.low + whole.high) / 2), at(whole.high), Vector3d::Zero()};
+  return if_sound(arc);
+}
+
+std::optional<PlainCurve> refit_arc_between(const Run& points) {
+  const int n = int(points.weight.size());
+  const Vector3d a = points.position.col(0), b = points.position.col(n - 1), middle = (a + b) / 2;
+  const double half = (b - a).norm() / 2;
+  if (!(half > 0) || !(points.weight.sum() > 0)) return std::nullopt;
+  const Vector3d along = (b - a) / (2 * half);
+  Vector3d up = points.position * points.weight / points.weight.sum() - middle;
+  up -= along * along.dot(up);
+  if (!(up.norm() > 1e-9 * half)) return std::nullopt;
+  up.normalize();
+  // A point (x, z) of the circle through both ends of sagitta h obeys
+  //   x^2 + z^2 - a^2 = z (h - a^2 / h); c = h - a^2 / h is linear, so least squares gives it.
+  double num = 0, den = 0;
+  for (int k = 0; k < n; ++k) {
+    const Vector3d q = (points.position.col(k) - middle) / half;
+    const double u = q.dot(along), z = q.dot(up);
+    num += points.weight[k] * z * (u * u + z * z - 1);
+    den += points.weight[k] * z * z;
+  }
+  if (!(den > 0)) return std::nullopt;
+  const double c = num / den, h = c / 2 + std::hypot(c / 2, 1);  // positive root of h^2 - c h - 1
+  PlainCurve arc;
+  arc.kind = StrokeKind::kArc;
+  // The root loses digits when the arc is flat (c large and negative): use its product form then.
+  const double sagitta = c > 0 ? h : 1 / (std::hypot(c / 2, 1) - c / 2);
+  arc.p = {a, middle + up * (half * sagitta), b, Vector3d::Zero()};
+  return if_sound(arc);
+}
+
+std::optional<PlainCurve> refit_bezier(const Run& points, VectorXd t) {
+  return refit_linear(StrokeKind::kBezier, points, std::move(t));
+}
+
+std::optional<PlainCurve> refit_ellipse(const Run& points, VectorXd t) {
+  const auto e = refit_linear(StrokeKind::kEllipse, points, std::move(t));
+  return e ? if_sound(with_principal_axes(*e)) : std::nullopt;
+}
+
+PlainCurve with_principal_axes(const PlainCurve& ellipse) {
+  Eigen::Matrix<double, 3, 2> m;
+  m << ellipse.p[1], ellipse.p[2];
+  const Eigen::JacobiSVD<Eigen::Matrix<double, 3, 2>> svd(m, Eigen::ComputeFullU);
+  PlainCurve out = ellipse;
+  out.p[1] = svd.matrixU().col(0) * svd.singularValues()[0];
+  out.p[2] = svd.matrixU().col(1) * svd.singularValues()[1];
+  return out;
+}
+
+}  // namespace sketchsplat
