@@ -139,6 +139,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_lift(&o->lift, f);
   list_link(&o->link, f);
   list_segment(&o->segment, f);
+  f->group("Kinds of strokes");
+  f->add("kind-keep", &o->kinds.keep, "", 0, 2, "Share of its edgels a simpler curve must explain");
   list_select(&o->select, f);
   list_extent(&o->extent, f);
   list_optimize(&o->optimize, f);

@@ -11,6 +11,7 @@
 #include "edges/match.h"
 #include "pipelines/extent.h"
 #include "pipelines/fields.h"
+#include "pipelines/kinds.h"
 #include "pipelines/optimize.h"
 #include "pipelines/polish.h"
 #include "pipelines/select.h"
@@ -37,6 +38,7 @@ struct ReconstructOptions {
   MapOptions maps;
   LinkOptions link;
   SegmentOptions segment;
+  KindOptions kinds;
   SelectOptions select;
   ExtentOptions extent;
   OptimizeOptions optimize;

@@ -11,7 +11,8 @@ struct PolishOptions {
   double spacing_px = 3.0;      ///< [px] between samples
   double reach_px = 1.5;        ///< [px] of a match in the first rounds
   double final_reach_px = 1.0;  ///< [px] in the last ones, widened if the edgels scatter more
-  double bias_px = 0.4;  ///< [px] a view that sees a stroke this far to one side sees another edge
+  double bias_px = 0.4;   ///< [px] a view that sees a stroke this far to one side sees another edge
+  bool exclusive = true;  ///< an edgel belongs to the stroke that lies nearest to it
   double stop_px = 0.002;  ///< [px] no sample moved farther: done
 };
 

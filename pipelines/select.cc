@@ -67,19 +67,28 @@ double seen_share(const EdgeWorld& world, const Observation& o, int stroke) {
 // Is this an edge of the object, or the contour of a curved surface, or an accident? Contours move
 // with the view, so they scatter, stand off from view to view, and are not there where a fixed edge
 // would be seen for sure. The more a stroke moves, the more often it must be seen.
-bool is_edge(const StrokeStats& s, double seen, double sharp, double sigma,
-             const SelectOptions& options) {
-  if (s.rms_px > options.max_rms_px + sigma || s.bias_px > options.max_bias_px + sigma)
-    return false;
-  if (sharp > 0 && s.width_px > options.max_width * sharp) return false;
+Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
+              const SelectOptions& options) {
+  if (s.length_px < options.min_length_px) return Verdict::kShort;
+  if (s.cover < options.min_cover) return Verdict::kUncovered;
+  if (s.rms_px > options.max_rms_px + sigma) return Verdict::kScattered;
+  if (s.bias_px > options.max_bias_px + sigma) return Verdict::kMoving;
+  if (sharp > 0 && s.width_px > options.max_width * sharp) return Verdict::kBlurred;
   const double moves = std::max(0.0, s.bias_px - sigma) / options.max_bias_px;
-  return seen < 0 || seen >= options.min_seen * (1 + moves);
+  if (seen >= 0 && seen < options.min_seen * (1 + moves)) return Verdict::kUnseen;
+  return Verdict::kKept;
 }
 
 }  // namespace
 
-PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
-                          const SelectOptions& options) {
+const char* verdict_name(Verdict verdict) {
+  static const char* const names[] = {"kept",   "short",   "uncovered", "scattered",
+                                      "moving", "blurred", "unseen",    "redundant"};
+  return names[int(verdict)];
+}
+
+Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
+                         const SelectOptions& options) {
   MatchOptions match;
   match.reach_px = 1.0;
   match.exclusive = false;
@@ -93,7 +102,6 @@ PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < sketch.size(); ++i) seen[i] = seen_share(world, every, i);
 
-  std::vector<bool> keep(sketch.size());
   std::vector<int> order(sketch.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -101,14 +109,19 @@ PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
   std::vector<std::vector<char>> owned;
   for (const EdgelMap& m : world.maps) owned.emplace_back(m.edgels.size(), 0);
   std::vector<int> per_view(world.views.size());
-  PassResult result;
+  Selection result;
+  result.verdicts.resize(sketch.size());
+  std::vector<bool> keep(sketch.size());
   for (int i : order) {
     const StrokeStats& s = o.strokes[i];
+    result.verdicts[i] = judge(s, seen[i], sharp, sigma, options);
+    if (result.verdicts[i] != Verdict::kKept) continue;
     const Claim c = claim(o, i, owned, &per_view);
-    keep[i] = c.views >= options.min_views && c.edgels >= options.min_own * s.matches &&
-              s.cover >= options.min_cover && is_edge(s, seen[i], sharp, sigma, options) &&
-              s.length_px >= options.min_length_px;
-    if (!keep[i]) continue;
+    if (c.views < options.min_views || c.edgels < options.min_own * s.matches) {
+      result.verdicts[i] = Verdict::kRedundant;
+      continue;
+    }
+    keep[i] = true;
     for (int k = o.layout.first[i]; k < o.layout.first[i + 1]; ++k)
       for (int m = o.matches.first[k]; m < o.matches.first[k + 1]; ++m)
         owned[o.matches.matches[m].view][o.matches.matches[m].edgel] = 1;
@@ -119,6 +132,8 @@ PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
     result.remap.stroke.push_back(keep[i] ? next++ : -1);
     result.changes += !keep[i];
   }
+  result.stats = o.strokes;
+  result.seen = seen;
   return result;
 }
 

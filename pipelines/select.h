@@ -2,6 +2,7 @@
 #pragma once
 
 #include "edges/lift.h"
+#include "pipelines/observe.h"
 #include "sketches/sketch.h"
 #include "topology/remap.h"
 
@@ -18,10 +19,29 @@ struct SelectOptions {
   double min_length_px = 4.0;  ///< [px]
 };
 
+/// Why a stroke was not kept; the first reason that holds.
+enum class Verdict {
+  kKept,
+  kShort,      ///< shorter than min_length_px
+  kUncovered,  ///< too little of it is seen by enough views
+  kScattered,  ///< its edgels do not lie on it
+  kMoving,     ///< it lies elsewhere in every view: the contour of a curved surface
+  kBlurred,    ///< no sharp edge
+  kUnseen,     ///< views that must see it do not
+  kRedundant,  ///< better strokes explain its edgels
+};
+const char* verdict_name(Verdict verdict);
+
+struct Selection : PassResult {
+  std::vector<Verdict> verdicts;   ///< one per stroke that came in
+  std::vector<StrokeStats> stats;  ///< what the verdicts rest on
+  std::vector<double> seen;  ///< share of the sure sightings with an edgel; -1 if none is sure
+};
+
 /// Keeps the fewest strokes that explain the edgels: best supported first, a stroke stays if enough
 /// of its edgels, in enough views, are explained by no stroke before it, and if it lies still in
 /// space (contours of curved surfaces move with the view) and is as sharp as edges here are.
-PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
-                          const SelectOptions& options);
+Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
+                         const SelectOptions& options);
 
 }  // namespace sketchsplat

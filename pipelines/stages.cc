@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/stages.h"
 
+#include <cstdio>
+
 #include "datasets/errors.h"
 #include "edges/link.h"
+#include "pipelines/kinds.h"
 #include "pipelines/observe.h"
 #include "sketches/segment.h"
 
@@ -104,6 +107,22 @@ Sketch initial_sketch(const std::vector<EdgePoint>& points, double footprint,
   return sketch;
 }
 
+void note_verdicts(const Sketch& sketch, const Selection& selection, Progress* progress) {
+  if (!progress) return;
+  for (int i = 0; i < sketch.size(); ++i) {
+    if (selection.verdicts[i] == Verdict::kKept) continue;
+    const StrokeStats& s = selection.stats[i];
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "%s %d is %s: %.0f px, %d views, scatter %.2f px, moves %.2f px, width %.2f px, "
+                  "cover %.2f, seen %.2f",
+                  kind_name(sketch.strokes[i].kind), i, verdict_name(selection.verdicts[i]),
+                  s.length_px, s.views, s.rms_px, s.bias_px, s.width_px, s.cover,
+                  selection.seen[i]);
+    progress->note(line);
+  }
+}
+
 Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
   return polish(fit_extents(sketch, world, options.extent), world, options.polish);
 }
@@ -113,9 +132,11 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
                    const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("fit", 0, report, progress);
-  const Sketch first =
-      polish(initial_sketch(points, world.footprint, options), world, options.polish);
-  const Sketch chosen = select_strokes(first, world, options.select).sketch;
+  Sketch first = polish(initial_sketch(points, world.footprint, options), world, options.polish);
+  first = choose_kinds(first, world, options.polish, options.kinds);
+  const Selection selection = select_strokes(first, world, options.select);
+  note_verdicts(first, selection, progress);
+  const Sketch& chosen = selection.sketch;
   report->counts.push_back({"strokes_lifted", double(first.size())});
   stage.result(std::to_string(chosen.size()) + " of " + std::to_string(first.size()) +
                " strokes stand");
@@ -138,8 +159,9 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
     const Simplified simpler = simplify(moved.sketch, topology);
     for (const auto& [name, count] : simpler.counts.named()) row.push_back({name, double(count)});
     round.changed = simpler.counts.total() > 0;
-    const PassResult chosen =
+    const Selection chosen =
         select_strokes(grown(simpler.sketch, world, options), world, options.select);
+    note_verdicts(simpler.sketch, chosen, progress);
     row.push_back({"unexplaining", double(chosen.changes)});
     round.changed |= chosen.changes > 0;
     round.sketch = chosen.sketch;
