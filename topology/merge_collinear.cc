@@ -116,7 +116,18 @@ std::vector<std::pair<End, End>> facing_ends(const Context& c) {
   return out;
 }
 
+// True if an end of one piece is so near to the other that they may continue one another.
+bool touch(const Context& c) {
+  for (int own : {c.a, c.b}) {
+    const Piece &p = c.piece(own), &q = c.piece(own == c.a ? c.b : c.a);
+    for (const Vector3d& end : {p.curve.begin(), p.curve.end()})
+      if (closest_point(q.curve, q.samples, end).distance <= c.px(c.options.gap_px)) return true;
+  }
+  return false;
+}
+
 std::optional<Merge> join_arcs(const Context& c) {
+  if (!touch(c)) return std::nullopt;
   const auto fit = refit_arc({run_of(c.piece(c.a)), run_of(c.piece(c.b))}, c.px(c.options.gap_px));
   if (!fit) return std::nullopt;
   // The ends of the union must come from different pieces, else one arc lies on the other.
@@ -190,7 +201,7 @@ bool line_is_short(const Piece& a, const Piece& b) {
 }
 
 std::optional<Merge> join_curves(const Context& c) {
-  if (!line_is_short(c.piece(c.a), c.piece(c.b))) return std::nullopt;
+  if (!line_is_short(c.piece(c.a), c.piece(c.b)) || !touch(c)) return std::nullopt;
   const bool any_cubic = c.piece(c.a).curve.kind == StrokeKind::kBezier ||
                          c.piece(c.b).curve.kind == StrokeKind::kBezier;
   for (const auto& [x, y] : facing_ends(c)) {

@@ -11,22 +11,45 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-struct Coverage {
-  double share = 0;  // of the length that lies on the other curve
-  VectorXd t, s;     // nearest parameter and arc length on the other curve; s goes on beyond ends
-};
+bool near_box(const Vector3d& p, const CurveSamples& samples, double reach) {
+  // Between its samples a curve leaves their box by a little.
+  reach += 0.02 * samples.length;
+  return ((p - samples.high).array() <= reach).all() && ((samples.low - p).array() <= reach).all();
+}
 
-// `s` of a sample beyond an end of the longer curve counts its distance from that end.
-Coverage coverage(const Piece& shorter, const Piece& longer, double distance, double angle_deg) {
+// Share of the shorter curve's length that lies on the longer one; 0 as soon as it cannot be
+// `least`.
+double shared_length(const Piece& shorter, const Piece& longer, double distance, double angle_deg,
+                     double least) {
   const CurveSamples& own = shorter.samples;
-  const VectorXd lengths = arc_lengths(longer.samples);
-  const double least = std::cos(angle_deg * M_PI / 180);
+  const double least_cosine = std::cos(angle_deg * M_PI / 180);
   const int n = int(own.weight.size());
-  Coverage c{0, VectorXd(n), VectorXd(n)};
+  double missing = 0;
+  for (int i = 0; i < n; ++i) {
+    const int k = i * 13 % n;  // all over the curve, so that most pairs are done after a few
+    const Vector3d q = own.position.col(k);
+    bool on = near_box(q, longer.samples, distance);
+    if (on) {
+      const Closest p = closest_point(longer.curve, longer.samples, q);
+      on = p.distance <= distance && std::abs(p.tangent.dot(own.tangent.col(k))) >= least_cosine;
+    }
+    if (!on) missing += own.weight[k] / own.length;
+    if (missing > 1 - least + 1e-9) return 0;
+  }
+  return 1 - missing;
+}
+
+// Where the samples of the shorter curve are on the longer one.
+struct Places {
+  VectorXd t;  // nearest parameter
+  VectorXd s;  // arc length there; beyond an end it goes on with the distance from that end
+};
+Places places_on(const Piece& longer, const CurveSamples& own) {
+  const VectorXd lengths = arc_lengths(longer.samples);
+  const int n = int(own.weight.size());
+  Places c{VectorXd(n), VectorXd(n)};
   for (int k = 0; k < n; ++k) {
     const Closest p = closest_point(longer.curve, longer.samples, own.position.col(k));
-    if (p.distance <= distance && std::abs(p.tangent.dot(own.tangent.col(k))) >= least)
-      c.share += own.weight[k] / own.length;
     c.t[k] = p.t;
     const double x = p.t * kPieces;
     const int i = std::min(int(x), kPieces - 1);
@@ -39,7 +62,7 @@ Coverage coverage(const Piece& shorter, const Piece& longer, double distance, do
 }
 
 std::optional<PlainCurve> refit(StrokeKind kind, const Piece& longer, const Piece& shorter,
-                                const Coverage& c) {
+                                const Places& c) {
   const std::vector<Run> runs = {run_of(longer), run_of(shorter)};
   const bool closed = longer.curve.closed();
   const int n = int(longer.samples.weight.size());
@@ -90,16 +113,18 @@ std::optional<Merge> propose(const Draft& draft, const std::vector<int>& degrees
   const bool a_longer = pa.samples.length >= pb.samples.length;
   const Piece& longer = a_longer ? pa : pb;
   const Piece& shorter = a_longer ? pb : pa;
-  const Coverage c = coverage(shorter, longer, tolerance, options.overlap_angle_deg);
-  if (!(c.share >= options.overlap_share)) return std::nullopt;
+  const double share =
+      shared_length(shorter, longer, tolerance, options.overlap_angle_deg, options.overlap_share);
+  if (!(share >= options.overlap_share - 1e-9)) return std::nullopt;
   const JointLimits limits{
       tolerance, options.overlap_angle_deg,
-      longer.samples.length + (1 - c.share) * shorter.samples.length + 2 * tolerance};
+      longer.samples.length + (1 - share) * shorter.samples.length + 2 * tolerance};
   const bool first = longer.support() >= shorter.support();
   const StrokeKind better = (first ? longer : shorter).curve.kind;
   const StrokeKind other = (first ? shorter : longer).curve.kind;
+  const Places places = places_on(longer, shorter.samples);
   for (StrokeKind kind : {better, other}) {
-    const auto fit = refit(kind, longer, shorter, c);
+    const auto fit = refit(kind, longer, shorter, places);
     if (!fit) continue;
     int begin = -1, end = -1;
     if (!fit->closed()) {
@@ -108,7 +133,7 @@ std::optional<Merge> propose(const Draft& draft, const std::vector<int>& degrees
     }
     auto m = settle(draft, degrees, a, b, *fit, begin, end, limits);
     if (!m) continue;
-    m->cost += 1 - c.share;
+    m->cost += 1 - share;
     return m;
   }
   return std::nullopt;

@@ -38,7 +38,11 @@ std::optional<PlainCurve> as_line(const PlainCurve& curve, const CurveSamples& s
 std::optional<PlainCurve> as_circle(const Piece& piece, double closing, double tolerance) {
   const double gap = (piece.curve.end() - piece.curve.begin()).norm();
   if (gap > closing || 3 * gap > piece.samples.length) return std::nullopt;
-  if (piece.curve.kind == StrokeKind::kArc) return circle_of_arc(piece.curve);
+  if (piece.curve.kind == StrokeKind::kArc) {
+    const PlainCurve circle = circle_of_arc(piece.curve);
+    const double missing = 2 * M_PI * circle.p[1].norm() - piece.samples.length;
+    return missing <= closing ? std::optional<PlainCurve>(circle) : std::nullopt;
+  }
   const auto circle = refit_circle(points_of(piece.samples));
   if (!circle) return std::nullopt;
   if (max_distance(*circle, piece.samples.position) > tolerance) return std::nullopt;

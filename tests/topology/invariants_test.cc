@@ -100,16 +100,23 @@ PlainCurve curve_of(const Sketch& s, int i) {
   return curve;
 }
 
-/// Largest distance between the samples of a stroke and the best partner of its kind.
-double difference(const Sketch& a, const Sketch& b) {
+/// Largest distance between the samples of a stroke and the best partner of its kind; infinite
+/// beyond `reach`, or if the numbers of strokes differ.
+double difference(const Sketch& a, const Sketch& b, double reach) {
   if (a.size() != b.size()) return INFINITY;
+  const auto mean = [](const PlainCurve& c) {
+    const CurveSamples s = sample_curve(c);
+    return Vector3d(s.position * s.weight / s.length);
+  };
   double worst = 0;
   for (int i = 0; i < a.size(); ++i) {
     double best = INFINITY;
     const PlainCurve ca = curve_of(a, i);
+    const Vector3d middle = mean(ca);
     for (int j = 0; j < b.size(); ++j) {
       if (a.strokes[i].kind != b.strokes[j].kind) continue;
       const PlainCurve cb = curve_of(b, j);
+      if ((mean(cb) - middle).norm() > reach) continue;
       best = std::min(best, std::max(max_distance(ca, sample_curve(cb).position),
                                      max_distance(cb, sample_curve(ca).position)));
     }
@@ -158,7 +165,7 @@ TEST(Invariants, EveryPassLeavesASoundSketchAndAConsistentRemap) {
       SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
       const PassResult r = pass(s, one_pixel());
       expect_sound(r, s);
-      EXPECT_EQ(r.changes == 0, r.remap.is_identity() && difference(s, r.sketch) == 0 &&
+      EXPECT_EQ(r.changes == 0, r.remap.is_identity() && difference(s, r.sketch, 1e-3) < 1e-9 &&
                                     s.nodes.cols() == r.sketch.nodes.cols());
     }
   }
@@ -197,7 +204,7 @@ TEST(Invariants, TheOrderOfTheStrokesDoesNotMatter) {
       SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
       const PassResult r = pass(s, one_pixel()), q = pass(shuffled, one_pixel());
       EXPECT_EQ(r.changes, q.changes);
-      EXPECT_LT(difference(r.sketch, q.sketch), 1e-5);
+      EXPECT_LT(difference(r.sketch, q.sketch, 1e-3), 1e-5);
       // The same strokes were merged with one another.
       for (int i = 0; i < s.size(); ++i)
         for (int j = 0; j < i; ++j)
@@ -212,17 +219,18 @@ TEST(Invariants, RotationTranslationAndScaleDoNotMatter) {
       Eigen::AngleAxisd(0.9, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   for (int seed = 0; seed < kSeeds; ++seed) {
     const Sketch s = random_sketch(seed, 12);
-    for (double scale : {1e-3, 1.0, 1e3})
-      for (const auto& [name, pass] : all_passes()) {
-        SCOPED_TRACE(testing::Message() << name << ", seed " << seed << ", scale " << scale);
-        TopologyOptions options;
-        options.footprint = scale;
-        const Vector3d shift(40, -70, 10);
-        const PassResult r = pass(s, one_pixel());
-        const PassResult q = pass(moved(s, rotation, shift, scale), options);
-        EXPECT_EQ(r.remap.stroke, q.remap.stroke);
-        EXPECT_LT(difference(moved(r.sketch, rotation, shift, scale), q.sketch), 1e-5 * scale);
-      }
+    const double scale = seed % 2 ? 1e-3 : 1e3;
+    for (const auto& [name, pass] : all_passes()) {
+      SCOPED_TRACE(testing::Message() << name << ", seed " << seed << ", scale " << scale);
+      TopologyOptions options;
+      options.footprint = scale;
+      const Vector3d shift(40, -70, 10);
+      const PassResult r = pass(s, one_pixel());
+      const PassResult q = pass(moved(s, rotation, shift, scale), options);
+      EXPECT_EQ(r.remap.stroke, q.remap.stroke);
+      EXPECT_LT(difference(moved(r.sketch, rotation, shift, scale), q.sketch, 1e-3 * scale),
+                1e-5 * scale);
+    }
   }
 }
 
