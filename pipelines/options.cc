@@ -54,6 +54,7 @@ void list_select(SelectOptions* o, Fields* f) {
          "Scatter of its edgels above that of the scene");
   f->add("max-bias", &o->max_bias_px, "px", 0.01, 100, "Offset from view to view");
   f->add("max-width", &o->max_width, "times sharp", 1, 100, "Blur of its edges");
+  f->add("min-seen", &o->min_seen, "", 0, 1, "Share of the sure sightings with an edge");
   f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
 }
 

@@ -21,12 +21,12 @@ struct Lamp {
 };
 // Unit frame. Near enough for a gradient across flat faces; one lamp per direction is weaker than
 // its neighbours, so that some pairs of faces differ by a few grey levels only.
-const Lamp kLamps[] = {{{2.6f, -2.2f, 3.6f}, 0.55f},
+const Lamp kLamps[] = {{{2.6f, -2.2f, 3.6f}, 0.58f},
                        {{-3.6f, -0.4f, 1.5f}, 0.36f},
-                       {{0.8f, 3.8f, 0.9f}, 0.18f},
-                       {{-0.7f, 0.9f, -3.6f}, 0.26f},
-                       {{3.3f, 1.4f, -1.9f}, 0.20f}};
-constexpr float kSky = 0.20f, kGround = 0.14f, kAlbedo = 0.88f;
+                       {{0.8f, 3.8f, 0.9f}, 0.34f},
+                       {{-0.7f, 0.9f, -3.6f}, 0.36f},
+                       {{3.3f, 1.4f, -1.9f}, 0.16f}};
+constexpr float kSky = 0.22f, kGround = 0.12f, kAlbedo = 0.88f;
 
 float shade(const Vector3f& point, const Vector3f& normal) {
   float light = kGround + (kSky - kGround) * 0.5f * (1 + normal.z());
