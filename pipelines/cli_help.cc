@@ -34,20 +34,28 @@ std::string with_short_name(const Field& field) {
 
 // One option: flag, help, facts, broken into lines; the facts are not torn apart.
 std::string option_lines(const Field& field) {
-  std::string line = "  " + with_short_name(field);
-  std::string text;
+  std::vector<std::string> words;
+  for (size_t at = 0, end; at < field.help.size(); at = end + 1) {
+    end = std::min(field.help.find(' ', at), field.help.size());
+    words.push_back(field.help.substr(at, end - at));
+  }
+  const std::string fact = facts(field);
+  if (!fact.empty()) words.push_back(fact);
+
+  std::string line = "  " + with_short_name(field), text;
   if (line.size() + 2 > kColumn) {
     text = line + "\n";
     line.clear();
   }
-  line.resize(kColumn, ' ');
-  line += field.help;
-  const std::string fact = facts(field);
-  if (!fact.empty() && line.size() + 1 + fact.size() > kWidth) {
-    text += line + "\n";
-    line.assign(kColumn - 1, ' ');
+  line.resize(kColumn - 1, ' ');
+  for (const std::string& word : words) {
+    if (line.size() + 1 + word.size() > kWidth && line.size() > kColumn) {
+      text += line + "\n";
+      line.assign(kColumn - 1, ' ');
+    }
+    line += " " + word;
   }
-  return text + line + (fact.empty() ? "" : " " + fact) + "\n";
+  return text + line + "\n";
 }
 
 std::string option_groups(const std::vector<Field>& fields) {

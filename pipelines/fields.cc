@@ -11,6 +11,7 @@ namespace {
 // Shortest text that reads back as the same number, whatever the locale.
 std::string number_text(double value) {
   char buffer[32];
+  if (std::nearbyint(value) == value && std::abs(value) < 1e7) return std::to_string(int(value));
   const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
   return std::string(buffer, result.ptr);
 }

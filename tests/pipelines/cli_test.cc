@@ -1,81 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The program as its users meet it: a binary, its streams and its exit status.
-#include "pipelines/cli.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
 
-#include "datasets/scene.h"
+#include "tests/pipelines/program.h"
 
 namespace sketchsplat {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-std::string text_of_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-int count_lines(const std::string& text) { return int(std::count(text.begin(), text.end(), '\n')); }
-
-class Program : public testing::Test {
- protected:
-  Program() : folder_(fs::temp_directory_path() / ("sketchsplat." + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~Program() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = std::string("'") + SKETCHSPLAT_BINARY + "' " + arguments + " >'" +
-                                (folder_ / "out").string() + "' 2>'" + (folder_ / "err").string() +
-                                "' </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of_file(folder_ / "out"),
-            text_of_file(folder_ / "err")};
-  }
-
-  // Two views of a white square on black.
-  std::string scene() const {
-    const fs::path scene = folder_ / "scene";
-    fs::create_directories(scene / "color");
-    Image<float> image(64, 48, 0.0f);
-    for (int y = 12; y < 36; ++y)
-      for (int x = 16; x < 48; ++x) image.at(x, y) = 1;
-    std::ofstream json(scene / "meta_data.json");
-    json << R"({"camera_model": "OPENCV", "height": 48, "width": 64, "frames": [)";
-    for (int k = 0; k < 2; ++k) {
-      const std::string name = std::to_string(k) + "_colors.png";
-      write_png((scene / "color" / name).string(), image);
-      json << (k ? "," : "") << R"({"rgb_path": ")" << name << R"(", "camtoworld": [[1,0,0,)" << k
-           << R"(],[0,1,0,0],[0,0,1,-4],[0,0,0,1]],)"
-           << R"("intrinsics": [[90,0,31.5],[0,90,23.5],[0,0,1]]})";
-    }
-    json << "]}";
-    return scene.string();
-  }
-
-  std::string in_folder(const std::string& name) const { return (folder_ / name).string(); }
-
-  fs::path folder_;
-};
 
 std::vector<std::string> verbs_in(const std::string& help) {
   std::vector<std::string> verbs;
@@ -262,10 +199,10 @@ TEST_F(Program, MapsAreTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(one == text_of_file(folder_ / "three/edge_image/0_colors.png"));
 }
 
-TEST_F(Program, ReadmeShowsTheOptionsAsTheyAre) {
-  const std::string readme = text_of_file(fs::path(SKETCHSPLAT_SOURCE_DIR) / "README.md");
-  EXPECT_THAT(readme, HasSubstr(run("--options-markdown").out))
-      << "replace the tables of options in README.md by what --options-markdown prints";
+TEST_F(Program, OptionsPageShowsTheOptionsAsTheyAre) {
+  const std::string page = text_of_file(fs::path(SKETCHSPLAT_SOURCE_DIR) / "OPTIONS.md");
+  const std::string now = run("--options-markdown").out;
+  EXPECT_TRUE(page.find(now) != std::string::npos) << "./run options writes OPTIONS.md anew";
 }
 
 }  // namespace

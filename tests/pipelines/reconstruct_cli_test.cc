@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// From a CAD part to its files and back to a score, through the program alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "pipelines/options.h"
+#include "tests/pipelines/program.h"
+
+namespace sketchsplat {
+namespace {
+
+using nlohmann::json;
+
+const char kScene[] = "synthesize box-hole --views 24 --resolution 400 --seed 3 --quiet --out ";
+
+class Chain : public Program {
+ protected:
+  // One scene for all tests of this file: rendering takes longest.
+  static void SetUpTestSuite() {
+    scene_ =
+        (fs::temp_directory_path() / ("sketchsplat_chain." + std::to_string(getpid()))).string();
+    Program::run_in(fs::temp_directory_path(), kScene + scene_);
+  }
+  static void TearDownTestSuite() { fs::remove_all(scene_); }
+
+  json json_in(const std::string& name) const { return json::parse(text_of_file(folder_ / name)); }
+
+  static std::string scene_;
+};
+std::string Chain::scene_;
+
+TEST_F(Chain, WritesEveryFileItPromisesAndNothingElse) {
+  const Outcome o = run("reconstruct " + scene_ + " --out " + in_folder("result"));
+  ASSERT_EQ(o.status, 0) << o.err;
+  std::vector<std::string> names;
+  int overlays = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "result")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_GT(entry.file_size(), 0u) << name;
+    if (name.rfind("overlay_", 0) == 0)
+      ++overlays;
+    else
+      names.push_back(name);
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("sketch.json", "parametric_edges.json",
+                                                   "sketch.obj", "sketch.step", "edge_points.ply",
+                                                   "report.json", "report.html"));
+  EXPECT_EQ(overlays, OutputOptions().overlays);
+}
+
+TEST_F(Chain, FindsTheEdgesOfThePart) {
+  ASSERT_EQ(run("reconstruct " + scene_ + " -q --out " + in_folder("result")).status, 0);
+  const Outcome o = run("evaluate --pred " + in_folder("result") + " --gt " + scene_ + " --json " +
+                        in_folder("score.json"));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_GT(json_in("score.json")["F5"], 95) << o.out;
+}
+
+TEST_F(Chain, ReportRecordsEveryOptionAndWhatOverrodeThePreset) {
+  ASSERT_EQ(run("reconstruct " + scene_ + " --rounds 2 --preset fast --out " + in_folder("result"))
+                .status,
+            0);
+  const json options = json_in("result/report.json")["options"];
+  ReconstructOptions expected;
+  apply_preset("fast", &expected);
+  expected.rounds = 2;
+  OutputOptions output;
+  Fields fields;
+  list_fields(&expected, &fields);
+  list_fields(&output, &fields);
+  for (const Field& field : fields.list)
+    EXPECT_EQ(options[field.name], json::parse(fields_json(fields.list))[field.name]) << field.name;
+  EXPECT_EQ(options.size(), fields.list.size() + 1) << "and the seed";
+}
+
+TEST_F(Chain, SketchIsTheSameForAnyNumberOfThreads) {
+  const std::string work = "reconstruct " + scene_ + " --overlays 0 --preset fast --out ";
+  ASSERT_EQ(run(work + in_folder("one") + " --threads 1").status, 0);
+  ASSERT_EQ(run(work + in_folder("three") + " --threads 3").status, 0);
+  for (const char* name : {"sketch.json", "sketch.obj", "sketch.step", "edge_points.ply"})
+    EXPECT_TRUE(text_of_file(folder_ / "one" / name) == text_of_file(folder_ / "three" / name))
+        << name;
+}
+
+TEST_F(Chain, ExportGivesTheFilesOfTheReconstruction) {
+  ASSERT_EQ(run("reconstruct " + scene_ + " --preset fast --out " + in_folder("result")).status, 0);
+  for (const char* name : {"sketch.obj", "edge_points.ply", "parametric_edges.json"}) {
+    ASSERT_EQ(run("export " + in_folder("result") + " --out " + in_folder(name)).status, 0) << name;
+    EXPECT_TRUE(text_of_file(folder_ / name) == text_of_file(folder_ / "result" / name)) << name;
+  }
+  ASSERT_EQ(run("export " + in_folder("result") + " -o " + in_folder("a.step")).status, 0);
+  EXPECT_THAT(text_of_file(folder_ / "a.step"), testing::StartsWith("ISO-10303-21;"));
+  EXPECT_EQ(run("export " + in_folder("result") + " -o " + in_folder("a.xyz")).status, kWrongUsage);
+  EXPECT_EQ(run("export " + in_folder("nothing") + " -o " + in_folder("a.obj")).status, kBadInput);
+}
+
+TEST_F(Program, SceneWithTooLittleIsStatus4) {
+  const Outcome o = run("reconstruct " + scene() + " -q --out " + in_folder("result"));
+  EXPECT_EQ(o.status, kTooLittle);
+  EXPECT_EQ(count_lines(o.err), 1) << o.err;
+}
+
+}  // namespace
+}  // namespace sketchsplat
