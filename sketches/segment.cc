@@ -9,6 +9,8 @@
 #include <cmath>
 #include <functional>
 
+#include "sketches/curve.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -113,7 +115,7 @@ Piece arc_through(const Matrix3Xd& p, const Matrix3Xd& t, bool closed, double un
   }
   out.error = ninth_decile(d);
   const double gap = 2 * M_PI - std::abs(sweep);
-  if (closed || gap * fit.radius < 3 * unit) {
+  if (closed || gap * fit.radius < 6 * unit || gap < 0.2) {
     out.kind = StrokeKind::kCircle;
     out.handles = {fit.centre, fit.normal * fit.radius};
     if (std::abs(sweep) < 5) out.error = 1e300;  // closed, but not around the centre
@@ -256,7 +258,10 @@ void segment_chain(const Matrix3Xd& points, const Matrix3Xd& tangents, bool clos
       sketch->add_stroke(piece.kind, -1, -1, piece.handles);
       continue;
     }
-    if ((piece.end - piece.begin).norm() < options.min_length * unit) continue;
+    Sketch alone;
+    alone.add_node(piece.begin), alone.add_node(piece.end);
+    alone.add_stroke(piece.kind, 0, 1, piece.handles);
+    if (stroke_length(alone, 0) < options.min_length * unit) continue;
     const int begin = sketch->add_node(piece.begin), end = sketch->add_node(piece.end);
     sketch->add_stroke(piece.kind, begin, end, piece.handles);
   }
