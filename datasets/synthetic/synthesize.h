@@ -45,7 +45,8 @@ Picture render(const SyntheticScene& scene, int view);
 /// Writes a scene folder in the layout of ABC-NEF as EMAP ships it:
 ///   meta_data.json (last, so that a folder that has it is whole), color/<k>_colors.png,
 ///   groundtruth/gt.json: list of {"type", "closed", "points": [[x, y, z], ...],
-///     "visible_views": [n, ...] one per point, "dihedral_deg"}.
+///     "visible_views": [n, ...] one per point, "dihedral_deg"},
+///   groundtruth/sketch.json: the same edges as a sketch graph.
 /// Views are rendered in parallel (OpenMP). Throws OutputError.
 void write_scene(const SyntheticScene& scene, const std::string& folder);
 
