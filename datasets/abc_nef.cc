@@ -13,12 +13,18 @@ std::string scene_file(const std::string& folder) {
   return (std::filesystem::path(folder) / "meta_data.json").string();
 }
 
-bool is_marked(const std::string& folder) { return std::filesystem::exists(scene_file(folder)); }
+bool is_marked(const std::string& folder) {
+  std::error_code none;
+  return std::filesystem::exists(scene_file(folder), none);
+}
 
 void read(const std::string& folder, Scene* scene) {
   const nlohmann::json json = load_json(scene_file(folder));
   const JsonValue root{&json, scene_file(folder), ""};
-  if (root.has("worldtogt")) scene->gt_from_world = root["worldtogt"].matrix(4, 4);
+  if (root.has("worldtogt")) {
+    scene->gt_from_world = root["worldtogt"].matrix(4, 4);
+    if (!scene->gt_from_world.allFinite()) root["worldtogt"].complain("finite numbers");
+  }
   ImageSize size;
   if (root.has("width") && root.has("height")) {
     size = {root["width"].positive_integer(), root["height"].positive_integer()};

@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "datasets/image_planes.h"
 
@@ -19,6 +20,17 @@ std::vector<int> channels_to_read(const OIIO::ImageSpec& spec) {
   colours.resize(std::min<size_t>(colours.size(), colours.size() < 3 ? 1 : 3));
   if (spec.alpha_channel >= 0 && !colours.empty()) colours.push_back(spec.alpha_channel);
   return colours;
+}
+
+/// Whether the colours can be premultiplied: none is above alpha by more than rounding to 8 bits.
+bool can_be_premultiplied(const Planes& planes) {
+  const std::vector<float>& alpha = planes.plane[planes.channels - 1];
+  for (int c = 0; c + 1 < planes.channels; ++c) {
+    for (size_t i = 0; i < alpha.size(); ++i) {
+      if (planes.plane[c][i] > alpha[i] + 1.0f / 255.0f) return false;
+    }
+  }
+  return true;
 }
 
 void divide_by_alpha(Planes* planes) {
@@ -63,8 +75,10 @@ bool read_planes(const char* path, bool header_only, Planes* planes, std::string
       planes->plane[c][i] = interleaved[i * spec.nchannels + channels[c]];
     }
   }
-  // Formats that store premultiplied colours (TIFF, OpenEXR) ignore the wish above.
-  if (spec.alpha_channel >= 0 && !spec.get_int_attribute("oiio:UnassociatedAlpha")) {
+  // Formats that store premultiplied colours (TIFF, OpenEXR) ignore the wish above, and some TIFF
+  // writers do not say which of the two they mean.
+  if (spec.alpha_channel >= 0 && !spec.get_int_attribute("oiio:UnassociatedAlpha") &&
+      can_be_premultiplied(*planes)) {
     divide_by_alpha(planes);
   }
   for (std::vector<float>& plane : planes->plane) {

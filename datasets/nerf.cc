@@ -16,14 +16,18 @@ std::string scene_file(const std::string& folder) {
   return (fs::path(folder) / "transforms_train.json").string();
 }
 
-bool is_marked(const std::string& folder) { return fs::exists(scene_file(folder)); }
+bool is_marked(const std::string& folder) {
+  std::error_code none;
+  return fs::exists(scene_file(folder), none);
+}
 
 /// NEF names ./train/<k>_colors, where PiDiNet's edge maps are, and keeps the pictures in
 /// train_img/.
 std::string picture_of(const std::string& folder, const std::string& file_path) {
   const fs::path named = fs::path(file_path).lexically_normal();
   const fs::path pictures = fs::path(folder) / (named.parent_path().string() + "_img");
-  if (!named.parent_path().empty() && fs::is_directory(pictures)) {
+  std::error_code none;
+  if (!named.parent_path().empty() && fs::is_directory(pictures, none)) {
     return find_image(pictures.string(), named.filename().string());
   }
   return find_image(folder, named.string());

@@ -136,6 +136,16 @@ Candidates find_candidates(const Gradient& g, float low) {
   return c;
 }
 
+void mark_outline(const Image<float>& alpha, EdgelMap* map) {
+  map->mask = Image<uint8_t>(alpha.width, alpha.height);
+  for (size_t i = 0; i < alpha.data.size(); ++i) map->mask.data[i] = alpha.data[i] >= 0.5f;
+  for (Edgel& e : map->edgels) {
+    const int x = int(std::lround(e.x - 1.5f * e.nx)), y = int(std::lround(e.y - 1.5f * e.ny));
+    const bool in = x >= 0 && y >= 0 && x < alpha.width && y < alpha.height;
+    e.outline = !in || !map->mask.at(x, y);  // the dark side is no object
+  }
+}
+
 }  // namespace
 
 EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
@@ -152,6 +162,7 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
       float(std::max(options.high_floor / 255, options.high_sigma * unit * map.noise));
   chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
+  if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);
   build_lookup(&map, options.reach_px);
   return map;
 }

@@ -14,6 +14,7 @@ struct Edgel {
   float nx = 0, ny = 0;  ///< unit normal, towards the brighter side
   float strength = 0;    ///< gradient magnitude on the edge, grey values in [0, 1] per px
   float width = 0;       ///< [px] standard deviation of the gradient's profile across the edge
+  bool outline = false;  ///< the object's mask ends here
 };
 
 /// The edgels of one view, chained along the edges, with a look-up by pixel.
@@ -22,6 +23,7 @@ struct EdgelMap {
   std::vector<Edgel> edgels;  ///< chain after chain
   std::vector<int> chain;     ///< C + 1: chain c is edgels chain[c] .. chain[c + 1] - 1
   float noise = 0;            ///< measured noise of the image, grey values in [0, 1]
+  Image<uint8_t> mask;        ///< 1 on the object, 0 elsewhere; empty if the image has no alpha
 
   // Look-up window: the bounding box of the edgels plus the reach.
   int x0 = 0, y0 = 0, window_width = 0, window_height = 0;

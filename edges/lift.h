@@ -7,6 +7,7 @@
 
 #include "datasets/view.h"
 #include "edges/detect.h"
+#include "edges/hull.h"
 
 namespace sketchsplat {
 
@@ -19,6 +20,7 @@ struct EdgeWorld {
   std::vector<Eigen::Matrix3Xf> plane_normal;
   Eigen::AlignedBox3d bounds;  ///< holds the object, world units
   double footprint = 0;        ///< world length of one pixel at the object (median over the views)
+  VisualHull hull;             ///< of the masks; empty without
 };
 
 /// Bounds from the edgels' boxes in all views: the part of space that (nearly) every view sees

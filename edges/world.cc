@@ -9,6 +9,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kGrid = 48;
+constexpr int kHullCells = 64;
 
 // The point nearest to all optical axes.
 Eigen::Vector3d meeting_point(const std::vector<View>& views) {
@@ -106,6 +107,7 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
     std::nth_element(footprint.begin(), footprint.begin() + footprint.size() / 2, footprint.end());
     world.footprint = footprint[footprint.size() / 2];
   }
+  world.hull = VisualHull(world, kHullCells);
   return world;
 }
 

@@ -136,7 +136,7 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
     std::cout << options_markdown(verbs);
   } else if ((parser.help || help_word) && verb) {
     std::cout << verb_help(*verb, common_fields.list);
-  } else if (parser.help || (help_word && extras.size() == 1)) {
+  } else if ((parser.help && extras.empty()) || (help_word && extras.size() == 1)) {
     std::cout << program_help(verbs, common_fields.list);
   } else if (!verb) {
     if (extras.empty()) throw UsageError("expected a verb: " + verb_names(verbs));

@@ -20,11 +20,11 @@ std::string placeholder(const Field& field) {
   return field.unit;
 }
 
-// "--out DIR"; a switch that is on by default is shown as the flag that turns it off.
+// "--out DIR"; a switch that is on by default shows how to turn it off.
 std::string flag_text(const Field& field) {
   if (field.positional) return field.unit;
   if (std::holds_alternative<bool*>(field.value))
-    return (field.initial == "true" ? "--no-" : "--") + field.name;
+    return (field.initial == "true" ? "--[no-]" : "--") + field.name;
   return "--" + field.name + " " + placeholder(field);
 }
 

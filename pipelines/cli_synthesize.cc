@@ -48,8 +48,9 @@ void list_scene_fields(SynthesizeOptions* o, Fields* f) {
   f->add("noise", &o->render.noise, "grey levels", 0, 100, "Standard deviation of the noise");
   f->add("blur", &o->render.blur, "px", 0, 20, "Standard deviation of the blur");
   f->add("exposure", &o->render.exposure, "stops", 0, 2, "Standard deviation of the exposure");
-  f->add("transparent", &o->render.transparent, "Fill the background instead of leaving it out");
-  f->add("background", &o->render.background, "", 0, 1, "Grey of a filled background");
+  f->add("transparent", &o->render.transparent, "Leave the background out (alpha)");
+  f->add("background", &o->render.background, "", 0, 1,
+         "Grey of the background if it is not left out");
   f->group("Object");
   f->add("extent", &o->extent, "world units", 1e-9, 1e9, "Longest side of the object");
   f->add("smooth-angle", &o->smooth_angle_deg, "deg", 0.01, 89,

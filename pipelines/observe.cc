@@ -18,33 +18,32 @@ double median(std::vector<float>* values) {
 
 StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, int min_views) {
   StrokeStats s;
-  std::vector<int> count(world.views.size());
-  std::vector<double> sum(world.views.size());
+  std::vector<std::vector<float>> by_view(world.views.size());
   std::vector<float> width, strength;
   double squares = 0;
-  int covered = 0;
+  int covered = 0, outline = 0;
   for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i) {
     ++s.samples;
     s.length_px += o.layout.length[i] / world.footprint;
     covered += o.matches.views_of(i) >= min_views;
     for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m) {
       const SampleMatch& match = o.matches.matches[m];
-      ++count[match.view];
-      sum[match.view] += match.distance_px;
+      const Edgel& e = world.maps[match.view].edgels[match.edgel];
+      by_view[match.view].push_back(match.distance_px);
       squares += double(match.distance_px) * match.distance_px;
-      width.push_back(world.maps[match.view].edgels[match.edgel].width);
-      strength.push_back(world.maps[match.view].edgels[match.edgel].strength);
+      width.push_back(e.width);
+      strength.push_back(e.strength);
+      outline += e.outline;
       ++s.matches;
     }
   }
-  double bias = 0;
-  for (size_t v = 0; v < count.size(); ++v) {
-    if (count[v] == 0) continue;
-    ++s.views;
-    bias += sum[v] / count[v] * sum[v] / count[v];
-  }
+  std::vector<float> bias;
+  for (std::vector<float>& distances : by_view)
+    if (!distances.empty()) bias.push_back(std::abs(float(median(&distances))));
+  s.views = int(bias.size());
+  s.bias_px = median(&bias);
   s.rms_px = s.matches ? std::sqrt(squares / s.matches) : 0;
-  s.bias_px = s.views ? std::sqrt(bias / s.views) : 0;
+  s.outline = s.matches ? double(outline) / s.matches : 0;
   s.cover = s.samples ? double(covered) / s.samples : 0;
   s.width_px = median(&width);
   s.strength = median(&strength);

@@ -13,7 +13,8 @@ struct StrokeStats {
   int samples = 0;
   int views = 0;         ///< in which it explains edgels
   double rms_px = 0;     ///< of its distances
-  double bias_px = 0;    ///< root mean square over the views of the mean distance in a view
+  double bias_px = 0;    ///< median over the views of |median distance in a view|
+  double outline = 0;    ///< share of its edgels that lie on an outline
   double cover = 0;      ///< share of its samples that enough views see
   double width_px = 0;   ///< median width of its edgels
   double strength = 0;   ///< median strength of its edgels

@@ -39,14 +39,6 @@ void list_link(LinkOptions* o, Fields* f) {
   f->add("link-bend", &o->bend_deg, "deg", 0.1, 180, "Largest departure from a common circle");
 }
 
-void list_maps(MapOptions* o, Fields* f) {
-  f->group("Edge maps of others (--detector maps:NAME)");
-  f->add("map-sigma", &o->sigma_px, "px", 0.3, 10, "Smoothing before the ridge is looked for");
-  f->add("map-high", &o->high, "of strong ridges", 0, 1, "Ridge that starts an edge");
-  f->add("map-low", &o->low, "of strong ridges", 0, 1, "Ridge that continues it");
-  f->add("map-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
-}
-
 void list_segment(SegmentOptions* o, Fields* f) {
   f->group("Cutting into curves");
   f->add("segment-tolerance", &o->tolerance, "px", 0.05, 20, "Points keep this near to a curve");
@@ -62,6 +54,7 @@ void list_select(SelectOptions* o, Fields* f) {
          "Scatter of its edgels above that of the scene");
   f->add("max-bias", &o->max_bias_px, "px", 0.01, 100, "Offset from view to view");
   f->add("max-width", &o->max_width, "times sharp", 1, 100, "Blur of its edges");
+  f->add("min-seen", &o->min_seen, "", 0, 1, "Share of the sure sightings with an edge");
   f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
 }
 
@@ -113,6 +106,19 @@ void list_fields(DetectOptions* o, Fields* f) {
   f->add("detect-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
 }
 
+void list_fields(MapOptions* o, Fields* f) {
+  f->group("Edge maps of others (--detector maps:NAME)");
+  f->add("map-sigma", &o->sigma_px, "px", 0.3, 10, "Smoothing before the ridge is looked for");
+  f->add("map-high", &o->high, "of strong ridges", 0, 1, "Ridge that starts an edge");
+  f->add("map-low", &o->low, "of strong ridges", 0, 1, "Ridge that continues it");
+  f->add("map-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
+}
+
+void list_detector(std::string* detector, Fields* f) {
+  f->choose("detector", detector, {"image", "maps:NAME"},
+            "Where edges come from: the images, or maps in edge_NAME/ of the scene");
+}
+
 void list_fields(CommonOptions* o, Fields* f) {
   f->group("Everywhere");
   f->add("threads", &o->threads, "threads", 0, 1024, "Threads to use; 0 is one per core");
@@ -127,12 +133,11 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->choose("preset", &o->preset, preset_names(),
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
-  f->choose("detector", &o->detector, {"image", "maps:NAME"},
-            "Where edges come from: the images, or maps in edge_NAME/ of the scene");
+  list_detector(&o->detector, f);
   list_fields(&o->detect, f);
+  list_fields(&o->maps, f);
   list_lift(&o->lift, f);
   list_link(&o->link, f);
-  list_maps(&o->maps, f);
   list_segment(&o->segment, f);
   list_select(&o->select, f);
   list_extent(&o->extent, f);

@@ -58,8 +58,10 @@ struct OutputOptions {
 /// member with its default in the struct, and one line in options.cc.
 void list_fields(CommonOptions* options, Fields* fields);
 void list_fields(DetectOptions* options, Fields* fields);
+void list_fields(MapOptions* options, Fields* fields);
 void list_fields(ReconstructOptions* options, Fields* fields);
 void list_fields(OutputOptions* options, Fields* fields);
+void list_detector(std::string* detector, Fields* fields);
 
 /// Sets what the preset (a name in preset_names()) stands for, leaves the rest alone. "balanced" is
 /// the defaults.

@@ -42,10 +42,7 @@ Json stages_json(const RunReport& run) {
 
 Json counts_json(const ReportInput& input) {
   const Sketch& sketch = input.reconstruction->sketch;
-  Numbers numbers = {{"views", double(input.scene->views.size())},
-                     {"views_left_out", double(input.scene->warnings.size())}};
-  Json counts = object_of(numbers);
-  counts.update(object_of(input.reconstruction->report.counts));
+  Json counts = object_of(input.reconstruction->report.counts);
   counts["curves"] = sketch.size();
   for (const StrokeKind kind : {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle,
                                 StrokeKind::kEllipse, StrokeKind::kBezier}) {
@@ -135,9 +132,6 @@ std::string report_json(const ReportInput& input) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - run.started;
   Json rounds = Json::array();
   for (const Numbers& round : run.rounds) rounds.push_back(object_of(round));
-  std::vector<std::string> warnings = input.scene->warnings;
-  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
-
   Json json;
   json["program"] = "sketchsplat";
   json["version"] = SKETCHSPLAT_VERSION;
@@ -148,7 +142,7 @@ std::string report_json(const ReportInput& input) {
   json["counts"] = counts_json(input);
   json["stages"] = stages_json(run);
   json["rounds"] = rounds;
-  json["warnings"] = warnings;
+  json["warnings"] = run.warnings;
   json["options"] = Json::parse(input.options_json);
   return dump(json, 2) + "\n";
 }

@@ -46,10 +46,34 @@ Claim claim(const Observation& o, int stroke, const std::vector<std::vector<char
   return c;
 }
 
-// Shading beside a weak edge shifts it more than a strong one: up to half as much again
-// is forgiven below 2 % of the range of grey per pixel.
-double max_bias(const StrokeStats& s, const SelectOptions& options) {
-  return options.max_bias_px * (1 + 0.5 * std::min(1.0, 0.02 / std::max(1e-6, s.strength)));
+// Share of the sightings that must be in which there is an edgel; -1 if none must be.
+double seen_share(const EdgeWorld& world, const Observation& o, int stroke) {
+  constexpr int kEvery = 3;  // samples: the hull is coarse
+  int sure = 0, seen = 0;
+  std::vector<char> matched(world.views.size());
+  for (int i = o.layout.first[stroke] + kEvery / 2; i < o.layout.first[stroke + 1]; i += kEvery) {
+    std::fill(matched.begin(), matched.end(), 0);
+    for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m)
+      matched[o.matches.matches[m].view] = 1;
+    for (size_t v = 0; v < world.views.size(); ++v)
+      if (world.hull.surely_visible(o.samples.position.col(i), world.views[v].center_in_world())) {
+        ++sure;
+        seen += matched[v];
+      }
+  }
+  return sure > 0 ? double(seen) / sure : -1;
+}
+
+// Is this an edge of the object, or the contour of a curved surface, or an accident? Contours move
+// with the view, so they scatter, stand off from view to view, and are not there where a fixed edge
+// would be seen for sure. The more a stroke moves, the more often it must be seen.
+bool is_edge(const StrokeStats& s, double seen, double sharp, double sigma,
+             const SelectOptions& options) {
+  if (s.rms_px > options.max_rms_px + sigma || s.bias_px > options.max_bias_px + sigma)
+    return false;
+  if (sharp > 0 && s.width_px > options.max_width * sharp) return false;
+  const double moves = std::max(0.0, s.bias_px - sigma) / options.max_bias_px;
+  return seen < 0 || seen >= options.min_seen * (1 + moves);
 }
 
 }  // namespace
@@ -62,7 +86,12 @@ PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
   const Observation o = observe(sketch, world, match, 2.0, options.min_views);
   const double sharp = sharp_width(o, options.min_views);
   const double sigma = o.matches.sigma_px;
-  const double max_rms = options.max_rms_px + sigma;
+  MatchOptions lone = match;
+  lone.min_run = 0;
+  const Observation every = observe(sketch, world, lone, 2.0, options.min_views);
+  std::vector<double> seen(sketch.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < sketch.size(); ++i) seen[i] = seen_share(world, every, i);
 
   std::vector<bool> keep(sketch.size());
   std::vector<int> order(sketch.size());
@@ -77,9 +106,7 @@ PassResult select_strokes(const Sketch& sketch, const EdgeWorld& world,
     const StrokeStats& s = o.strokes[i];
     const Claim c = claim(o, i, owned, &per_view);
     keep[i] = c.views >= options.min_views && c.edgels >= options.min_own * s.matches &&
-              s.cover >= options.min_cover && s.rms_px <= max_rms &&
-              s.bias_px <= max_bias(s, options) + sigma &&
-              (sharp <= 0 || s.width_px <= options.max_width * sharp) &&
+              s.cover >= options.min_cover && is_edge(s, seen[i], sharp, sigma, options) &&
               s.length_px >= options.min_length_px;
     if (!keep[i]) continue;
     for (int k = o.layout.first[i]; k < o.layout.first[i + 1]; ++k)

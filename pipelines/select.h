@@ -8,12 +8,13 @@
 namespace sketchsplat {
 
 struct SelectOptions {
-  int min_views = 4;          ///< that must see a stroke by edgels no better stroke explains
-  double min_own = 0.5;       ///< share of its edgels that no better stroke explains
-  double min_cover = 0.5;     ///< share of its length that min_views views see
-  double max_rms_px = 0.35;   ///< [px] scatter of its edgels, beyond that of the scene
-  double max_bias_px = 0.25;  ///< [px] offset from view to view: a contour that moves with the view
-  double max_width = 1.3;     ///< width of its edgels over that of the scene's sharp edges
+  int min_views = 4;           ///< that must see a stroke by edgels no better stroke explains
+  double min_own = 0.5;        ///< share of its edgels that no better stroke explains
+  double min_cover = 0.5;      ///< share of its length that min_views views see
+  double max_rms_px = 0.3;     ///< [px] scatter of its edgels, beyond that of the scene
+  double max_bias_px = 0.12;   ///< [px] offset in half of the views, beyond that scatter
+  double max_width = 1.25;     ///< width of its edgels over that of the scene's sharp edges
+  double min_seen = 0.22;      ///< share of the sure sightings with an edgel, if it lies still
   double min_length_px = 4.0;  ///< [px]
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/curve.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <vector>
 
@@ -142,6 +143,18 @@ Eigen::Matrix3Xd sample_stroke(const Sketch& sketch, int stroke, double spacing)
     out.col(i) = p;
   }
   return out;
+}
+
+double largest_extent(const Sketch& sketch) {
+  constexpr int kSteps = 32;
+  Eigen::AlignedBox3d box;
+  Eigen::Vector3d p, d;
+  for (int s = 0; s < sketch.size(); ++s)
+    for (int i = 0; i <= kSteps; ++i) {
+      evaluate_stroke(sketch, s, double(i) / kSteps, &p, &d);
+      box.extend(p);
+    }
+  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
 }
 
 }  // namespace sketchsplat

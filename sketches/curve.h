@@ -141,4 +141,7 @@ std::vector<double> arc_length_parameters(const Sketch& sketch, int stroke,
 /// 3 x (max(1, ceil(length / spacing)) + 1).
 Eigen::Matrix3Xd sample_stroke(const Sketch& sketch, int stroke, double spacing);
 
+/// Longest side of the box along the axes around all strokes, to about 1 %; 0 if there is none.
+double largest_extent(const Sketch& sketch);
+
 }  // namespace sketchsplat

@@ -32,8 +32,9 @@ struct StepOptions {
   double scale = 1.0;           ///< file unit (mm) per world unit
 };
 /// AP214 edge-based wireframe: one product, one vertex per junction; LINE, CIRCLE, ELLIPSE,
-/// B_SPLINE_CURVE as such; a colour by kind. No time stamp, so the same sketch gives the same
-/// bytes.
+/// B_SPLINE_CURVE as such, one CONNECTED_EDGE_SET per unbranched chain; a colour by kind. Arcs
+/// flatter than 1e-7 of the extent become lines. The name is UTF-8. No time stamp, so the same
+/// sketch gives the same bytes. Without strokes: a valid file with a product and nothing in it.
 void write_step(std::ostream& out, const Sketch& sketch, const StepOptions& options = {});
 
 /// Binary little-endian PLY: samples of all strokes every `spacing` world units with

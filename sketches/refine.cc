@@ -62,8 +62,8 @@ void accumulate(StrokeKind kind, const Vector3d& point, double t, const ControlP
     J -= (u * (u.transpose() * J)).eval();
     r -= u * u.dot(r);
   }
-  *H += J.transpose() * J;
-  *g += J.transpose() * r;
+  H->noalias() += J.transpose().lazyProduct(J);
+  g->noalias() += J.transpose().lazyProduct(r);
 }
 
 // One damped step; the damping grows with the sum of the diagonal, so that directions in which the

@@ -144,13 +144,26 @@ TEST_F(Program, NoLineOfHelpIsWiderThanAPage) {
 }
 
 TEST_F(Program, WrongUsageIsOneSentenceAndStatus2) {
-  for (const char* arguments :
-       {"", "detekt", "--frobnicate", "detect", "detect scene", "detect --out x",
-        "detect scene --out x --frobnicate", "detect scene --out x --detect-sigma",
-        "detect scene --out x --detect-sigma 99", "detect scene --out x --detect-sigma nan",
-        "detect scene --out x --threads many", "detect scene --out x --threads -1",
-        "detect scene another --out x", "detect scene --out ''", "detect '' --out x",
-        "detect scene --out x --format jpeg", "--seed", "--seed 1.5 detect scene --out x"}) {
+  for (const char* arguments : {"",
+                                "detekt",
+                                "detekt --help",
+                                "help detekt",
+                                "--frobnicate",
+                                "detect",
+                                "detect scene",
+                                "detect --out x",
+                                "detect scene --out x --frobnicate",
+                                "detect scene --out x --detect-sigma",
+                                "detect scene --out x --detect-sigma 99",
+                                "detect scene --out x --detect-sigma nan",
+                                "detect scene --out x --threads many",
+                                "detect scene --out x --threads -1",
+                                "detect scene another --out x",
+                                "detect scene --out ''",
+                                "detect '' --out x",
+                                "detect scene --out x --format jpeg",
+                                "--seed",
+                                "--seed 1.5 detect scene --out x"}) {
     const Outcome o = run(arguments);
     EXPECT_EQ(o.status, kWrongUsage) << arguments;
     EXPECT_EQ(o.out, "") << arguments;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gmock/gmock.h>
 
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -46,7 +47,8 @@ std::string changed(Change change) {
 }
 
 bool same_bits(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  return a.cols() == b.cols() && std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
+  if (a.cols() != b.cols()) return false;
+  return a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
 }
 
 void expect_same(const Sketch& a, const Sketch& b) {

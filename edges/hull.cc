@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "edges/hull.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edges/lift.h"
+
+namespace sketchsplat {
+namespace {
+
+// Number of mask pixels above and left of each pixel: says at once whether a box touches the mask.
+Image<int> integral(const Image<uint8_t>& mask) {
+  Image<int> sum(mask.width + 1, mask.height + 1);
+  for (int y = 0; y < mask.height; ++y) {
+    int row = 0;
+    for (int x = 0; x < mask.width; ++x) {
+      row += mask.at(x, y);
+      sum.at(x + 1, y + 1) = sum.at(x + 1, y) + row;
+    }
+  }
+  return sum;
+}
+
+// Does a box of half size r around (x, y) touch the mask? What leaves the image is not judged.
+bool touches(const Image<int>& sum, double x, double y, double r) {
+  const int w = sum.width - 1, h = sum.height - 1;
+  if (x < 0 || y < 0 || x > w - 1 || y > h - 1) return true;
+  const int x0 = std::max(0, int(x - r)), x1 = std::min(w, int(x + r) + 2);
+  const int y0 = std::max(0, int(y - r)), y1 = std::min(h, int(y + r) + 2);
+  return sum.at(x1, y1) - sum.at(x0, y1) - sum.at(x1, y0) + sum.at(x0, y0) > 0;
+}
+
+}  // namespace
+
+VisualHull::VisualHull(const EdgeWorld& world, int cells) {
+  std::vector<int> masked;
+  for (size_t v = 0; v < world.maps.size(); ++v)
+    if (!world.maps[v].mask.empty() && !world.maps[v].edgels.empty()) masked.push_back(int(v));
+  if (masked.size() < 3 || world.bounds.isEmpty()) return;
+  std::vector<Image<int>> sums(masked.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int m = 0; m < int(masked.size()); ++m) sums[m] = integral(world.maps[masked[m]].mask);
+  low_ = world.bounds.min();
+  cell_ = world.bounds.sizes().maxCoeff() / cells;
+  const Eigen::Vector3d n = (world.bounds.sizes() / cell_).array().ceil();
+  nx_ = std::max(1, int(n.x())), ny_ = std::max(1, int(n.y())), nz_ = std::max(1, int(n.z()));
+  occupied_.assign(size_t(nx_) * ny_ * nz_, 0);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int k = 0; k < nz_; ++k)
+    for (int j = 0; j < ny_; ++j)
+      for (int i = 0; i < nx_; ++i) {
+        const Eigen::Vector3d p = low_ + cell_ * Eigen::Vector3d(i + .5, j + .5, k + .5);
+        bool in = true;
+        for (size_t m = 0; m < masked.size() && in; ++m) {
+          const View& v = world.views[masked[m]];
+          double z;
+          const Eigen::Vector2d q = v.project(p, &z);
+          in = z <= 0 || touches(sums[m], q.x(), q.y(), 0.87 * cell_ * v.camera.fx / z);
+        }
+        occupied_[(size_t(k) * ny_ + j) * nx_ + i] = in;
+      }
+}
+
+bool VisualHull::inside(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d q = (p - low_) / cell_;
+  if (!(q.minCoeff() >= 0) || q.x() >= nx_ || q.y() >= ny_ || q.z() >= nz_) return false;
+  return occupied_[(size_t(q.z()) * ny_ + size_t(q.y())) * nx_ + size_t(q.x())];
+}
+
+bool VisualHull::surely_visible(const Eigen::Vector3d& point, const Eigen::Vector3d& camera) const {
+  if (empty()) return false;
+  const Eigen::Vector3d way = camera - point;
+  const double length = way.norm(), diagonal = cell_ * (nx_ + ny_ + nz_);
+  for (double s = 2.5 * cell_; s < std::min(length, diagonal); s += 0.7 * cell_)
+    if (inside(point + way * (s / length))) return false;
+  return true;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace sketchsplat {
+struct EdgeWorld;
+}
+
+namespace sketchsplat {
+
+/// The part of space that every mask holds: a voxel grid that contains the object and little more
+/// (Laurentini, PAMI 1994). A point whose line of sight meets no voxel on the way is seen for sure.
+class VisualHull {
+ public:
+  VisualHull() = default;  ///< empty: nothing is sure
+  /// `cells` along the longest side of the world's bounds. Without masks the hull is empty and
+  /// nothing is sure.
+  VisualHull(const EdgeWorld& world, int cells);
+
+  bool empty() const { return occupied_.empty(); }
+  /// Does nothing of the hull stand between the point and the camera, but for the point's own
+  /// surroundings (two and a half cells)? False if the hull is empty.
+  bool surely_visible(const Eigen::Vector3d& point, const Eigen::Vector3d& camera) const;
+
+ private:
+  bool inside(const Eigen::Vector3d& p) const;
+
+  Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
+  double cell_ = 0;
+  int nx_ = 0, ny_ = 0, nz_ = 0;
+  std::vector<uint8_t> occupied_;
+};
+
+}  // namespace sketchsplat
