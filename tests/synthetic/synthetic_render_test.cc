@@ -291,7 +291,7 @@ TEST(Parts, EveryPartHasSoundTruthForSeveralSeeds) {
   for (const std::string& name : part_names())
     for (std::uint64_t seed : {1, 2, 77}) {
       const Brep brep = make_part(name, seed);
-      const Truth truth = sharp_edges(brep, unit_frame(brep, name), 0.5);
+      const Truth truth = sharp_edges(brep, unit_frame(brep, name), 1.0);
       EXPECT_FALSE(truth.curves.empty()) << name;
       EXPECT_TRUE(validate(truth.sketch).empty())
           << name << " " << seed << ": " << validate(truth.sketch)[0];
@@ -307,9 +307,11 @@ TEST(Step, RealPartsLoadWithSoundTruth) {
   for (const auto& entry : fs::recursive_directory_iterator(root)) {
     if (!entry.is_regular_file()) continue;
     const Brep brep = read_step(entry.path().string());
-    const Truth truth = sharp_edges(brep, unit_frame(brep, entry.path().string()), 0.5);
+    const Truth truth = sharp_edges(brep, unit_frame(brep, entry.path().string()), 1.0);
     EXPECT_TRUE(validate(truth.sketch).empty()) << entry.path();
     EXPECT_FALSE(truth.curves.empty()) << entry.path();
+    for (const TruthCurve& curve : truth.curves)
+      EXPECT_GT(curve.dihedral_deg, 0.1) << entry.path() << " keeps a tangent edge";
     ++count;
   }
   EXPECT_GT(count, 0);

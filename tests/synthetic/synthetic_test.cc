@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 Truth truth_of(const std::string& part, std::uint64_t seed = 1) {
   const Brep brep = make_part(part, seed);
-  return sharp_edges(brep, unit_frame(brep, part), 0.5);
+  return sharp_edges(brep, unit_frame(brep, part), 1.0);
 }
 
 int count(const Sketch& sketch, StrokeKind kind) {
