@@ -81,6 +81,7 @@ Eigen::MatrixXf sample_visibility(const Observation& o, int num_views, int gap) 
 }
 
 std::vector<EdgeTarget> make_targets(const EdgeWorld& world, const OptimizeOptions& options) {
+  if (options.steps <= 0) return {};
   std::vector<EdgeTarget> targets(world.views.size());
   LossOptions loss;
   loss.kind = LossKind::kSquared;

@@ -24,7 +24,7 @@ struct OptimizeOptions {
   int gap = 4;              ///< samples: see sample_visibility
 };
 
-/// The edge maps that renderings are compared with.
+/// The edge maps that renderings are compared with, one per view; none if there are no steps.
 std::vector<EdgeTarget> make_targets(const EdgeWorld& world, const OptimizeOptions& options);
 
 struct OptimizeResult {
