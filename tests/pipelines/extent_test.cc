@@ -58,9 +58,7 @@ TEST_P(Extent, AStrokeThatIsTooLongRetreats) {
   expect_true_ends(fit_extents(s, world, {}));
 }
 
-TEST_P(Extent, AStrokeOfTheRightLengthKeepsIt) {
-  expect_true_ends(fit_extents(truth, world, {}));
-}
+TEST_P(Extent, AStrokeOfTheRightLengthKeepsIt) { expect_true_ends(fit_extents(truth, world, {})); }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Extent, testing::Range(0, 3), [](const auto& info) {
   return std::string(kind_name(open_kinds()[info.param].strokes[0].kind));

@@ -74,7 +74,8 @@ TEST(ChooseKinds, LinesCirclesAndTheOrderOfStrokesStay) {
   Sketch s;
   add_line(&s, {0.1, 0.1, 0.2}, {0.9, 0.1, 0.2});
   add_circle(&s, {0.5, 0.5, 0.8}, {0, 0, 0.2});
-  const int cubic = add_bezier(&s, {0.2, 0.3, 0.4}, {0.4, 0.7, 0.5}, {0.6, 0.0, 0.5}, {0.8, 0.4, 0.6});
+  const int cubic =
+      add_bezier(&s, {0.2, 0.3, 0.4}, {0.4, 0.7, 0.5}, {0.6, 0.0, 0.5}, {0.8, 0.4, 0.6});
   s.evidence[cubic].support_views = 7;
   const Sketch out = chosen(s, s);
   ASSERT_EQ(out.size(), 3);

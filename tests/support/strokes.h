@@ -55,8 +55,8 @@ inline double farthest(const Sketch& s, int stroke, const std::vector<Polyline>&
                        double ends = 0) {
   double worst = 0;
   for (int i = 0; i <= 40; ++i)
-    worst = std::max(
-        worst, distance_to(curves, point_at(s, stroke, ends + (1 - 2 * ends) * i / 40.0)));
+    worst =
+        std::max(worst, distance_to(curves, point_at(s, stroke, ends + (1 - 2 * ends) * i / 40.0)));
   return worst;
 }
 
@@ -97,9 +97,15 @@ inline Image<uint8_t> convex_mask(const View& view, const std::vector<Eigen::Vec
         return cross(b - a, c - a) >= -1e-9;
       });
       if (!border) continue;
-      for (int y = 0; y < mask.height; ++y)
-        for (int x = 0; x < mask.width; ++x)
-          if (cross(b - a, Eigen::Vector2d(x, y) - a) < 0) mask.at(x, y) = 0;
+      for (int y = 0; y < mask.height; ++y) {  // in this row, at + slope * x >= 0 is inside
+        const double at = cross(b - a, Eigen::Vector2d(0, y) - a), slope = -(b - a).y();
+        const double end = std::clamp(-at / slope, -1.0, mask.width + 1.0);
+        int first = 0, last = mask.width;  // of what lies outside
+        if (slope > 0) last = std::clamp(int(std::ceil(end)), 0, mask.width);
+        if (slope < 0) first = std::clamp(int(std::floor(end)) + 1, 0, mask.width);
+        if (slope == 0 && at >= 0) last = 0;
+        std::fill(mask.row(y) + first, mask.row(y) + std::max(first, last), uint8_t(0));
+      }
     }
   return mask;
 }
