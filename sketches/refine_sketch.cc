@@ -95,7 +95,7 @@ RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layou
   std::vector<double*> blocks;
   for (int i = 0; i < layout.size(); ++i) {
     const double strength = quadratics.information[i].trace();
-    if (!(strength > 0)) continue;
+    if (!(strength > 0) || !quadratics.slope.col(i).allFinite()) continue;
     trace += strength;
     const Stroke& stroke = s.strokes[layout.stroke[i]];
     auto* residual = new SampleResidual;
