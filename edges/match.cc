@@ -107,9 +107,13 @@ Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
     const View& v = world.views[m.view];
     const Edgel& e = world.maps[m.view].edgels[m.edgel];
     const Eigen::Vector3d q = v.cam_from_world * samples.position.col(m.sample);
-    const Eigen::Vector3d a =
+    Eigen::Vector3d a =
         (Eigen::RowVector2d(e.nx, e.ny) * v.camera.project_jacobian(q) * v.cam_from_world.rotation)
             .transpose();
+    // A sample that slides along its curve leaves the curve where it is: no distance changes. What
+    // else a few slanted edgels would say on that could move the whole curve, as nothing holds it.
+    const Eigen::Vector3d t = samples.tangent.col(m.sample);
+    a -= a.dot(t) * t;
     out.information[m.sample] += m.weight * a * a.transpose();
     out.slope.col(m.sample) += m.weight * a * double(m.distance_px);
   }

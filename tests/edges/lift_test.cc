@@ -166,6 +166,21 @@ TEST(Match, QuadraticTellsTheOffsetOfALineAcrossIt) {
   }
 }
 
+TEST(Match, AMoveAlongTheCurveCostsNothingWhateverTheEdgelsAreLike) {
+  // The samples lie askew to the edge by 5 degrees, so that no edgel is square to them.
+  const Eigen::Vector3d a(0.4, 0.495, 0.5), b(0.6, 0.505, 0.5);
+  const EdgeWorld w =
+      ideal_world(ring_of_views(20, kMiddle, 3), {segment({0.1, 0.5, 0.5}, {0.9, 0.5, 0.5})});
+  const CurvePoints samples = line_samples(a, b, 20);
+  const Matches m = match_samples(w, samples, {});
+  ASSERT_GE(m.matches.size(), 100u);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d t = samples.tangent.col(i);
+    EXPECT_LE(t.dot(m.information[i] * t), 1e-9 * m.information[i].trace());
+    EXPECT_LE(std::abs(t.dot(m.slope.col(i))), 1e-9 * m.slope.col(i).norm() + 1e-12);
+  }
+}
+
 TEST(Match, AnEdgelBelongsToTheNearerOfTwoLinesFourPixelsApart) {
   const double gap = 4 * 3.0 / 500;
   const Eigen::Vector3d a(0.1, 0.5, 0.5), b(0.9, 0.5, 0.5), up(0, gap, 0);
