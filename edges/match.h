@@ -37,7 +37,7 @@ struct SampleMatch {
 struct Matches {
   std::vector<SampleMatch> matches;
   std::vector<int> first;                    ///< N + 1, into matches
-  std::vector<Eigen::Matrix3d> information;  ///< [px^2 / world^2], across the tangent only
+  std::vector<Eigen::Matrix3d> information;  ///< [px^2 / world^2]
   Eigen::Matrix3Xd slope;                    ///< 3 x N [px^2 / world]
   double sigma_px = 0;                       ///< robust standard deviation of the distances
   int views_of(int sample) const { return first[sample + 1] - first[sample]; }
