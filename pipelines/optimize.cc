@@ -130,12 +130,12 @@ OptimizeResult optimize(const Sketch& sketch, const EdgeWorld& world,
     DrawingGradient g;
     const double loss = edge_loss(drawing, o.layout, visibility, world.views, targets, &g);
     if (step == 0) result.initial_loss = loss;
-    result.final_loss = loss;
     const double fade = std::pow(0.1, double(step) / options.steps);
     adam.descend(to_vector(g.sketch.nodes, g.sketch.handles, g.log_width, g.log_depth), rate * fade,
                  &x);
     from_vector(x, &drawing);
   }
+  result.final_loss = edge_loss(drawing, o.layout, visibility, world.views, targets, nullptr);
   result.sketch = drawing.sketch;
   for (int s = 0; s < strokes; ++s)
     result.sketch.evidence[s].opacity = 1 - std::exp(-drawing.depth[s] * 1.75);

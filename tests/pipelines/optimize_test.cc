@@ -133,6 +133,9 @@ TEST(Optimize, LowersTheLossAndBringsALineBackThatIsOnePixelOff) {
   EXPECT_GT(r.splats, 30);
   EXPECT_LT(farthest(r.sketch, 0, polylines_of(truth), 0.1), 0.1 * w.footprint);
   EXPECT_GT(r.sketch.evidence[0].opacity, 0.5);
+  options.steps = 1;
+  const OptimizeResult one = optimize(off, w, targets, options);
+  EXPECT_LT(one.final_loss, one.initial_loss) << "the last step counts";
 }
 
 // A back edge is seen in every other view; in the rest it is hidden and another edge passes beside

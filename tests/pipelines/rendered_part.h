@@ -20,7 +20,7 @@ inline void write_part(const std::string& part, int views, int resolution, doubl
                        const std::string& folder) {
   SynthesizeOptions options;
   options.part = part;
-  options.seed = 3;
+  options.seed = 2;
   options.rig.views = views;
   options.rig.resolution = resolution;
   options.render.noise = noise;
