@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -33,6 +34,12 @@ void restart_peak_memory() {
   std::ofstream("/proc/self/clear_refs") << 5;
 }
 
+double cpu_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
 // Seconds that one thread takes to read the images. The second pass counts: as for the runs that
 // follow, the files are in the cache of the system.
 double decode_seconds(const Scene& scene) {
@@ -54,7 +61,7 @@ double decode_seconds(const Scene& scene) {
 struct Run {
   Prediction prediction;  // empty if there was too little
   std::vector<StageReport> stages;
-  double total = 0, peak_mb = 0;
+  double total = 0, cpu = 0, peak_mb = 0;
 };
 
 // All that `sketchsplat reconstruct` does, timed from opening the scene to the last file.
@@ -63,22 +70,24 @@ Run run_once(const std::string& folder, const ReconstructOptions& method, const 
   Run run;
   restart_peak_memory();
   const Clock::time_point began = Clock::now();
+  const double cpu_began = cpu_seconds();
   const Scene scene = open_scene(folder);
   prepare_output_folder(out);
+  bool written = true;
   try {
     const Reconstruction result = reconstruct(scene, method, progress);
     const Clock::time_point writing = Clock::now();
     write_outputs(out, result, scene, method, OutputOptions(), progress);
     run.stages = result.report.stages;
     run.stages.push_back({"write", seconds_since(writing), 0, ""});
-    run.total = seconds_since(began);
-    run.peak_mb = peak_memory_mb();
-    run.prediction = read_prediction(out);
   } catch (const TooLittleError& e) {
-    run.total = seconds_since(began);
-    run.peak_mb = peak_memory_mb();
     progress->warn(folder + ": " + e.what());
+    written = false;
   }
+  run.total = seconds_since(began);
+  run.cpu = cpu_seconds() - cpu_began;
+  run.peak_mb = peak_memory_mb();
+  if (written) run.prediction = read_prediction(out);
   return run;
 }
 
@@ -107,6 +116,7 @@ Numbers numbers_of(const Run& run, const Evaluation& e, double decode) {
   for (const char* stage : {"detect", "lift", "fit", "round", "polish", "write"})
     n.push_back({stage, stage_seconds(run, stage)});
   n.push_back({"total", run.total});
+  n.push_back({"cpu", run.cpu});
   n.push_back({"decode", decode});
   n.push_back({"total_per_decode", decode > 0 ? run.total / decode : kNone});
   n.push_back({"peak_mb", run.peak_mb});

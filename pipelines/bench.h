@@ -25,8 +25,9 @@ std::vector<BenchVariant> ablation_variants();
 
 /// What a variant made of a scene. Numbers, in this order: F5 F2 F1 (published protocol, per cent),
 /// Acc Comp (thousandths of the object's longest side), fine_F5 fine_F2 fine_F1, strokes,
-/// strokes_per_edge, structure_F, seconds per stage, total (everything that a user waits for),
-/// decode (the scene's images by one thread), total_per_decode, peak_mb. NaN where there is none.
+/// strokes_per_edge, structure_F, seconds per stage, total (everything that a user waits for), cpu
+/// (of all threads), decode (the scene's images by one thread), total_per_decode, peak_mb. NaN
+/// where there is none.
 struct BenchRow {
   std::string scene, variant;
   Numbers numbers;

@@ -71,7 +71,8 @@ void run_bench_verb(const BenchArguments& arguments, const CommonOptions& common
   const std::vector<BenchRow> means = mean_rows(rows);
   rows.insert(rows.end(), means.begin(), means.end());
   const std::vector<std::string> ablation_columns = {
-      "F5", "F2", "F1", "Acc", "Comp", "strokes", "strokes_per_edge", "structure_F", "total"};
+      "F5",          "F2",    "F1", "fine_F1", "Acc", "Comp", "strokes", "strokes_per_edge",
+      "structure_F", "total", "cpu"};
   std::cout << bench_table(rows,
                            arguments.ablation ? ablation_columns : std::vector<std::string>());
 }
