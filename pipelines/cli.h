@@ -42,5 +42,6 @@ Verb detect_verb();
 Verb evaluate_verb();
 Verb export_verb();
 Verb synthesize_verb();
+Verb bench_verb();
 
 }  // namespace sketchsplat

@@ -2,14 +2,13 @@
 #include "pipelines/options.h"
 
 #include <cmath>
-#include <utility>
 
 namespace sketchsplat {
 namespace {
 
 struct Preset {
   const char* name;
-  std::vector<std::pair<const char*, const char*>> values;  // option, text
+  OptionTexts values;
 };
 
 const std::vector<Preset>& presets() {
@@ -154,6 +153,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->group("Rounds");
   f->add("rounds", &o->rounds, "rounds", 0, 1000, "Of drawing and simplifying, at the most");
   f->add("simplify", &o->simplify, "Simplify the graph between the rounds");
+  f->add("early-polish", &o->early_polish,
+         "Least squares on the edgels in the fit and between the rounds, too");
   f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
 }
 
@@ -173,19 +174,25 @@ std::vector<std::string> preset_names() {
 }
 
 void apply_preset(const std::string& name, ReconstructOptions* options) {
-  Fields fields;
-  list_fields(options, &fields);
   for (const Preset& preset : presets()) {
     if (preset.name != name) continue;
-    for (const auto& [option, text] : preset.values) {
-      const Field* field = find_field(fields.list, option);
-      if (!field) throw std::logic_error(std::string("preset of unknown option ") + option);
-      assign(*field, text);
-    }
+    set_options(preset.values, options);
     options->preset = name;
     return;
   }
   throw UsageError("--preset: expected one of fast, balanced, accurate, got '" + name + "'");
+}
+
+void set_options(const OptionTexts& texts, ReconstructOptions* options) {
+  Fields fields;
+  list_fields(options, &fields);
+  for (const auto& [name, text] : texts) {
+    const Field* field = find_field(fields.list, name);
+    if (!field)
+      throw UsageError("unknown option " + name + " (see sketchsplat reconstruct --help)");
+    assign(*field, text);
+    if (field->applied) field->applied();
+  }
 }
 
 }  // namespace sketchsplat

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "edges/detect.h"
@@ -46,6 +47,7 @@ struct ReconstructOptions {
   PolishOptions polish;
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
   bool simplify = true;      ///< run the topology passes between the rounds
+  bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
   bool final_polish = true;  ///< end on the edgels themselves
 };
 
@@ -69,5 +71,11 @@ void list_detector(std::string* detector, Fields* fields);
 /// the defaults.
 void apply_preset(const std::string& preset, ReconstructOptions* options);
 std::vector<std::string> preset_names();
+
+/// Option names (as after "--") and the texts of their values.
+using OptionTexts = std::vector<std::pair<std::string, std::string>>;
+
+/// Sets options as a command line with these would, in this order. Throws UsageError.
+void set_options(const OptionTexts& texts, ReconstructOptions* options);
 
 }  // namespace sketchsplat

@@ -20,7 +20,7 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
   for (int k = 0; k < options.rounds; ++k) {
     const Round round = run_round(sketch, world, targets, options, &report, progress);
     sketch = round.sketch;
-    if (!round.changed) break;
+    if (options.simplify && !round.changed) break;
   }
   sketch = finish_sketch(sketch, world, options, &report, progress);
   return {sketch, report};

@@ -123,8 +123,15 @@ void note_verdicts(const Sketch& sketch, const Selection& selection, Progress* p
   }
 }
 
+// The polish before the last one.
+PolishOptions early(const ReconstructOptions& options) {
+  PolishOptions polish = options.polish;
+  if (!options.early_polish) polish.rounds = 0;
+  return polish;
+}
+
 Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
-  return polish(fit_extents(sketch, world, options.extent), world, options.polish);
+  return polish(fit_extents(sketch, world, options.extent), world, early(options));
 }
 
 }  // namespace
@@ -132,8 +139,8 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
                    const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("fit", 0, report, progress);
-  Sketch first = polish(initial_sketch(points, world.footprint, options), world, options.polish);
-  first = choose_kinds(first, world, options.polish, options.kinds);
+  Sketch first = polish(initial_sketch(points, world.footprint, options), world, early(options));
+  first = choose_kinds(first, world, early(options), options.kinds);
   const Selection selection = select_strokes(first, world, options.select);
   note_verdicts(first, selection, progress);
   const Sketch& chosen = selection.sketch;
