@@ -185,13 +185,15 @@ TEST_F(BoxHole, PicturesWithoutAnyEdgeAreTooLittle) {
   EXPECT_THROW(reconstruct(scene, {}, nullptr), InputError) << "and none at all is an error";
 }
 
-TEST_F(BoxHole, PicturesThatDoNotAgreeAreTooLittle) {
-  Scene scene = *scene_;  // every picture under the pose of another: nothing meets in space
+TEST_F(BoxHole, PicturesUnderWrongPosesGiveLessThanThePartOrARefusal) {
+  Scene scene = *scene_;  // every picture under the pose of another: what meets, meets by chance
   const size_t n = scene.views.size();
   for (size_t i = 0; i < n; ++i)
     scene.views[i].image_path = scene_->views[(i * 7 + 3) % n].image_path;
   try {
-    EXPECT_LE(reconstruct(scene, {}, nullptr).sketch.size(), 3);
+    const Sketch sketch = reconstruct(scene, {}, nullptr).sketch;
+    EXPECT_TRUE(validate(sketch).empty());
+    EXPECT_LT(f_at(score(sketch, folder_->path()).fine, 0.005), 30);
   } catch (const TooLittleError&) {
   }
 }
