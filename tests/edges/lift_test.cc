@@ -166,18 +166,16 @@ TEST(Match, QuadraticTellsTheOffsetOfALineAcrossIt) {
   }
 }
 
-TEST(Match, AMoveAlongTheCurveCostsNothingWhateverTheEdgelsAreLike) {
-  // The samples lie askew to the edge by 5 degrees, so that no edgel is square to them.
-  const Eigen::Vector3d a(0.4, 0.495, 0.5), b(0.6, 0.505, 0.5);
-  const EdgeWorld w =
-      ideal_world(ring_of_views(20, kMiddle, 3), {segment({0.1, 0.5, 0.5}, {0.9, 0.5, 0.5})});
-  const CurvePoints samples = line_samples(a, b, 20);
-  const Matches m = match_samples(w, samples, {});
-  ASSERT_GE(m.matches.size(), 100u);
-  for (int i = 0; i < 20; ++i) {
-    const Eigen::Vector3d t = samples.tangent.col(i);
-    EXPECT_LE(t.dot(m.information[i] * t), 1e-9 * m.information[i].trace());
-    EXPECT_LE(std::abs(t.dot(m.slope.col(i))), 1e-9 * m.slope.col(i).norm() + 1e-12);
+TEST(Match, SamplesAreHeldWeaklyAlongTheirCurve) {
+  const Eigen::Vector3d a(0.1, 0.5, 0.5), b(0.9, 0.5, 0.5);
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), {segment(a, b)});
+  const Matches m = match_samples(w, line_samples(a, b, 20), {});
+  for (int i = 2; i < 18; ++i) {
+    const Eigen::Vector3d t = Eigen::Vector3d::UnitX();
+    const double along = t.dot(m.information[i] * t), all = m.information[i].trace();
+    ASSERT_GT(all, 0);
+    EXPECT_GT(along, 1e-4 * all) << "or a few foreign edgels make the whole line slide";
+    EXPECT_LT(along, 0.05 * all) << "or lines cannot grow";
   }
 }
 

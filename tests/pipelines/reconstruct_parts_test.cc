@@ -31,7 +31,9 @@ TEST_P(Part, ItsEdgesAreFoundAndNoContourIsTakenForOne) {
   const Evaluation e = score(sketch, folder.path());
   EXPECT_GE(f_at(e.fine, 0.005), expected.f5);
   for (const Level& level : e.fine.levels) {
-    if (level.threshold == 0.005) EXPECT_GE(level.precision, expected.precision5);
+    if (level.threshold == 0.005) {
+      EXPECT_GE(level.precision, expected.precision5);
+    }
   }
   EXPECT_LE(sketch.size(), expected.strokes_per_edge * e.structure.edges);
 }
