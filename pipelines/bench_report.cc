@@ -66,7 +66,7 @@ bool drawable(const BenchRow& row, const Panel& panel) {
 
 // Fits the axes to the rows.
 Panel make_panel(const std::string& quantity, double left, const std::vector<BenchRow>& rows) {
-  Panel p = {quantity, left, 40, 330, 300, 1e9, -1e9, 100, 0};
+  Panel p = {quantity, left, 40, 330, 300, 1e9, -1e9, 0, 100};
   double lowest = 100;
   for (const BenchRow& row : rows) {
     if (!drawable(row, p)) continue;
