@@ -90,6 +90,10 @@ Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
   if (s.rms_px > options.max_rms_px + sigma) return Verdict::kScattered;
   if (s.bias_px > options.max_bias_px + sigma) return Verdict::kMoving;
   if (sharp > 0 && s.width_px > options.max_width * sharp) return Verdict::kBlurred;
+  // What lies dead still in many views is no contour, though its two sides look alike in others.
+  if (s.views >= 2 * options.min_views && s.rms_px <= options.max_rms_px &&
+      s.bias_px <= 0.5 * (options.max_bias_px + sigma))
+    return Verdict::kKept;
   const double moves = std::max(0.0, s.bias_px - sigma) / options.max_bias_px;
   if (seen >= 0 && seen < options.min_seen * (1 + moves)) return Verdict::kUnseen;
   return Verdict::kKept;
