@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <dlfcn.h>
+
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "datasets/synthetic/parts.h"
-#include "datasets/synthetic/synthesize.h"
+#include "datasets/synthetic/plugin.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/run_report.h"
@@ -16,14 +19,32 @@ struct SynthesizeArguments {
   SynthesizeOptions options;
 };
 
+// Beside the executable, where it is installed, or where it was built.
+const SynthesisPlugin& load_plugin() {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
+  for (const fs::path& folder :
+       {bin, bin / ".." / "lib" / "sketchsplat", fs::path(SKETCHSPLAT_SYNTHESIS_FOLDER)}) {
+    void* library = ::dlopen((folder / kSynthesisPluginFile).c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) continue;
+    using Get = const SynthesisPlugin*();
+    return *reinterpret_cast<Get*>(::dlsym(library, kSynthesisPluginSymbol))();
+  }
+  throw std::runtime_error(std::string(kSynthesisPluginFile) + " cannot be loaded: " + ::dlerror());
+}
+
 void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
                     Progress* progress) {
   arguments.options.seed = std::uint64_t(common.seed);
-  const SyntheticScene scene = synthesize(arguments.options);
+  const SynthesisPlugin& plugin = load_plugin();
+  const std::unique_ptr<SyntheticScene, void (*)(SyntheticScene*)> made(
+      plugin.synthesize(arguments.options), plugin.release);
+  const SyntheticScene& scene = *made;
   prepare_output_folder(arguments.out);
   {
     Stage stage("render", 0, nullptr, progress);
-    write_scene(scene, arguments.out);
+    plugin.write_scene(scene, arguments.out);
     stage.result(std::to_string(scene.views.size()) + " views");
   }
   std::cout << arguments.out << ": " << scene.views.size() << " views, "

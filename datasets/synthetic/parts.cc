@@ -23,6 +23,7 @@
 #include <TopoDS_Shape.hxx>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <random>
 
 #include "datasets/errors.h"
@@ -287,14 +288,9 @@ const Part kParts[] = {
     {"tee", tee},
     {"u-channel", u_channel},
 };
+static_assert(std::size(kParts) == std::size(kPartNames), "parts.h names every part");
 
 }  // namespace
-
-std::vector<std::string> part_names() {
-  std::vector<std::string> names;
-  for (const Part& part : kParts) names.push_back(part.name);
-  return names;
-}
 
 Brep make_part(const std::string& name, std::uint64_t seed) {
   for (const Part& part : kParts) {
