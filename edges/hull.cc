@@ -46,19 +46,31 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
   const Eigen::Vector3d n = (world.bounds.sizes() / cell_).array().ceil();
   nx_ = std::max(1, int(n.x())), ny_ = std::max(1, int(n.y())), nz_ = std::max(1, int(n.z()));
   occupied_.assign(size_t(nx_) * ny_ * nz_, 0);
+  const auto in_all_masks = [&](const Eigen::Vector3d& p, double radius) {
+    for (size_t m = 0; m < masked.size(); ++m) {
+      const View& v = world.views[masked[m]];
+      double z;
+      const Eigen::Vector2d q = v.project(p, &z);
+      if (z > 0 && !touches(sums[m], q.x(), q.y(), radius * v.camera.fx / z)) return false;
+    }
+    return true;
+  };
+  // Blocks of cells first: most of space is empty.
+  constexpr int kBlock = 4;
+  const double half_diagonal = 0.87;  // of a cell, half the square root of 3
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int k = 0; k < nz_; ++k)
-    for (int j = 0; j < ny_; ++j)
-      for (int i = 0; i < nx_; ++i) {
-        const Eigen::Vector3d p = low_ + cell_ * Eigen::Vector3d(i + .5, j + .5, k + .5);
-        bool in = true;
-        for (size_t m = 0; m < masked.size() && in; ++m) {
-          const View& v = world.views[masked[m]];
-          double z;
-          const Eigen::Vector2d q = v.project(p, &z);
-          in = z <= 0 || touches(sums[m], q.x(), q.y(), 0.87 * cell_ * v.camera.fx / z);
-        }
-        occupied_[(size_t(k) * ny_ + j) * nx_ + i] = in;
+  for (int k0 = 0; k0 < nz_; k0 += kBlock)
+    for (int j0 = 0; j0 < ny_; j0 += kBlock)
+      for (int i0 = 0; i0 < nx_; i0 += kBlock) {
+        const Eigen::Vector3d middle =
+            low_ + cell_ * (Eigen::Vector3d(i0, j0, k0) + Eigen::Vector3d::Constant(kBlock / 2.0));
+        if (!in_all_masks(middle, kBlock * half_diagonal * cell_)) continue;
+        for (int k = k0; k < std::min(nz_, k0 + kBlock); ++k)
+          for (int j = j0; j < std::min(ny_, j0 + kBlock); ++j)
+            for (int i = i0; i < std::min(nx_, i0 + kBlock); ++i) {
+              const Eigen::Vector3d p = low_ + cell_ * Eigen::Vector3d(i + .5, j + .5, k + .5);
+              occupied_[(size_t(k) * ny_ + j) * nx_ + i] = in_all_masks(p, half_diagonal * cell_);
+            }
       }
 }
 

@@ -94,11 +94,8 @@ void Sweeper::choose_neighbours() {
       by_angle.push_back({-c, j});
     }
     std::sort(by_angle.begin(), by_angle.end());
-    // Near views see the same edges, far ones tell depth: take both, evenly.
-    const size_t keep = size_t(options_.sweep_views);
-    const size_t pool = std::min(by_angle.size(), std::max(keep, by_angle.size() * 3 / 4));
-    for (size_t k = 0; k < std::min(keep, pool); ++k)
-      neighbours_[i].push_back(by_angle[k * pool / std::min(keep, pool)].second);
+    for (const auto& a : by_angle)
+      if (int(neighbours_[i].size()) < options_.sweep_views) neighbours_[i].push_back(a.second);
   }
 }
 

@@ -7,6 +7,10 @@
 namespace sketchsplat {
 namespace {
 
+// Edgels say next to nothing on moves along the curve; what a few slanted ones say must not make
+// the whole curve slide. So a hundredth of what they say across it holds every sample where it is.
+constexpr double kSlide = 1e-2;
+
 // Matches of all samples in one view, in the order of the samples.
 std::vector<SampleMatch> match_view(const EdgeWorld& world, int view, const CurvePoints& samples,
                                     const MatchOptions& options) {
@@ -112,6 +116,10 @@ Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
             .transpose();
     out.information[m.sample] += m.weight * a * a.transpose();
     out.slope.col(m.sample) += m.weight * a * double(m.distance_px);
+  }
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Vector3d t = samples.tangent.col(i);
+    out.information[i] += kSlide * out.information[i].trace() * t * t.transpose();
   }
   out.sigma_px = robust_sigma(out.matches);
   return out;

@@ -6,7 +6,7 @@
 namespace sketchsplat {
 
 struct KindOptions {
-  double keep = 0.88;  ///< share of its edgels that a simpler curve must explain as well
+  double keep = 0.8;  ///< share of its edgels that a simpler curve must explain as well
 };
 
 /// Gives every open stroke the simplest kind that explains its edgels: cubics are tried as lines

@@ -9,6 +9,8 @@
 namespace sketchsplat {
 namespace {
 
+constexpr double kStillPx = 0.25;
+
 double median(std::vector<float>* values) {
   if (values->empty()) return 0;
   const size_t k = values->size() / 2;
@@ -21,7 +23,7 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, 
   std::vector<std::vector<float>> by_view(world.views.size());
   std::vector<float> width, strength;
   double squares = 0;
-  int covered = 0, outline = 0;
+  int covered = 0, outline = 0, still = 0;
   for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i) {
     ++s.samples;
     s.length_px += o.layout.length[i] / world.footprint;
@@ -34,6 +36,7 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, 
       width.push_back(e.width);
       strength.push_back(e.strength);
       outline += e.outline;
+      still += std::abs(match.distance_px) < kStillPx;
       ++s.matches;
     }
   }
@@ -43,6 +46,7 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, 
   s.views = int(bias.size());
   s.bias_px = median(&bias);
   s.rms_px = s.matches ? std::sqrt(squares / s.matches) : 0;
+  s.still = s.matches ? double(still) / s.matches : 0;
   s.outline = s.matches ? double(outline) / s.matches : 0;
   s.cover = s.samples ? double(covered) / s.samples : 0;
   s.width_px = median(&width);

@@ -14,6 +14,7 @@ struct StrokeStats {
   int views = 0;         ///< in which it explains edgels
   double rms_px = 0;     ///< of its distances
   double bias_px = 0;    ///< median over the views of |median distance in a view|
+  double still = 0;       ///< share of its edgels within 0.25 px of it
   double outline = 0;    ///< share of its edgels that lie on an outline
   double cover = 0;      ///< share of its samples that enough views see
   double width_px = 0;   ///< median width of its edgels

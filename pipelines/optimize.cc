@@ -12,25 +12,22 @@ namespace {
 
 // Everything that descends, as one vector: nodes, handles, then per stroke the logarithm of the
 // splats' width and of their optical depth.
-struct Parameters {
-  Eigen::VectorXd x;
-  int nodes, handles, strokes;
+Eigen::VectorXd to_vector(const Eigen::Matrix3Xd& nodes, const Eigen::Matrix3Xd& handles,
+                          const Eigen::VectorXd& log_width, const Eigen::VectorXd& log_depth) {
+  Eigen::VectorXd x(nodes.size() + handles.size() + log_width.size() + log_depth.size());
+  x << Eigen::Map<const Eigen::VectorXd>(nodes.data(), nodes.size()),
+      Eigen::Map<const Eigen::VectorXd>(handles.data(), handles.size()), log_width, log_depth;
+  return x;
+}
 
-  Parameters(const Sketch& s, double width, double depth)
-      : nodes(int(s.nodes.size())), handles(int(s.handles.size())), strokes(s.size()) {
-    x.resize(nodes + handles + 2 * strokes);
-    x.head(nodes) = Eigen::Map<const Eigen::VectorXd>(s.nodes.data(), nodes);
-    x.segment(nodes, handles) = Eigen::Map<const Eigen::VectorXd>(s.handles.data(), handles);
-    x.segment(nodes + handles, strokes).setConstant(std::log(width));
-    x.tail(strokes).setConstant(std::log(depth));
-  }
-  void write(Sketch* s) const {
-    Eigen::Map<Eigen::VectorXd>(s->nodes.data(), nodes) = x.head(nodes);
-    Eigen::Map<Eigen::VectorXd>(s->handles.data(), handles) = x.segment(nodes, handles);
-  }
-  double width(int stroke) const { return std::exp(x[nodes + handles + stroke]); }
-  double depth(int stroke) const { return std::exp(x[nodes + handles + strokes + stroke]); }
-};
+void from_vector(const Eigen::VectorXd& x, Drawing* d) {
+  const Eigen::Index nodes = d->sketch.nodes.size(), handles = d->sketch.handles.size();
+  const Eigen::Index strokes = d->width.size();
+  Eigen::Map<Eigen::VectorXd>(d->sketch.nodes.data(), nodes) = x.head(nodes);
+  Eigen::Map<Eigen::VectorXd>(d->sketch.handles.data(), handles) = x.segment(nodes, handles);
+  d->width = x.segment(nodes + handles, strokes).array().exp();
+  d->depth = x.tail(strokes).array().exp();
+}
 
 struct Adam {
   Eigen::VectorXd first, second;
@@ -48,20 +45,39 @@ struct Adam {
   }
 };
 
-// A Gaussian per sample: as long as its piece of the stroke, so that their sum is an even ridge.
-Splats dress(const SampleLayout& layout, const Samples& samples, const Parameters& p) {
+}  // namespace
+
+Splats draw_splats(const Drawing& drawing, const SampleLayout& layout) {
+  const Samples samples = evaluate_samples(drawing.sketch, layout);
   Splats s = Splats::zero(layout.size());
   s.mean = samples.position;
   s.tangent = samples.tangent;
   for (int i = 0; i < layout.size(); ++i) {
     s.along[i] = 0.7 * layout.length[i];
-    s.across[i] = p.width(layout.stroke[i]);
-    s.opacity[i] = p.depth(layout.stroke[i]);
+    s.across[i] = drawing.width[layout.stroke[i]];
+    s.opacity[i] = drawing.depth[layout.stroke[i]];
   }
   return s;
 }
 
-}  // namespace
+double edge_loss(const Drawing& drawing, const SampleLayout& layout,
+                 const Eigen::MatrixXf& visibility, const std::vector<View>& views,
+                 const std::vector<EdgeTarget>& targets, DrawingGradient* gradient) {
+  SplatGradient by_splat;
+  const double loss = render_loss_views(draw_splats(drawing, layout), visibility, views, targets,
+                                        RasterOptions(), gradient ? &by_splat : nullptr)
+                          .sum();
+  if (!gradient) return loss;
+  gradient->sketch =
+      evaluate_samples_backward(drawing.sketch, layout, {by_splat.mean, by_splat.tangent});
+  gradient->log_width = gradient->log_depth = Eigen::VectorXd::Zero(drawing.sketch.size());
+  for (int i = 0; i < layout.size(); ++i) {
+    const int s = layout.stroke[i];
+    gradient->log_width[s] += by_splat.across[i] * drawing.width[s];
+    gradient->log_depth[s] += by_splat.opacity[i] * drawing.depth[s];
+  }
+  return loss;
+}
 
 Eigen::MatrixXf sample_visibility(const Observation& o, int num_views, int gap) {
   Eigen::MatrixXf seen = Eigen::MatrixXf::Zero(o.layout.size(), num_views);
@@ -81,6 +97,7 @@ Eigen::MatrixXf sample_visibility(const Observation& o, int num_views, int gap) 
 }
 
 std::vector<EdgeTarget> make_targets(const EdgeWorld& world, const OptimizeOptions& options) {
+  if (options.steps <= 0) return {};
   std::vector<EdgeTarget> targets(world.views.size());
   LossOptions loss;
   loss.kind = LossKind::kSquared;
@@ -101,38 +118,27 @@ OptimizeResult optimize(const Sketch& sketch, const EdgeWorld& world,
   result.splats = o.layout.size();
   const Eigen::MatrixXf visibility =
       options.visibility ? sample_visibility(o, views, options.gap) : Eigen::MatrixXf();
-  Parameters p(sketch, options.sigma_px * world.footprint, 1.0);
-  Eigen::VectorXd rate(p.x.size());
-  rate.head(p.nodes + p.handles).setConstant(options.step_px * world.footprint);
-  rate.tail(2 * p.strokes).setConstant(0.05);
+  const int strokes = sketch.size();
+  Drawing drawing{sketch, Eigen::VectorXd::Constant(strokes, options.sigma_px * world.footprint),
+                  Eigen::VectorXd::Ones(strokes)};
+  Eigen::VectorXd x = to_vector(sketch.nodes, sketch.handles, drawing.width.array().log(),
+                                drawing.depth.array().log());
+  Eigen::VectorXd rate = Eigen::VectorXd::Constant(x.size(), options.step_px * world.footprint);
+  rate.tail(2 * strokes).setConstant(0.05);
   Adam adam;
-  const RasterOptions raster;
   for (int step = 0; step < options.steps; ++step) {
-    p.write(&result.sketch);
-    const Samples samples = evaluate_samples(result.sketch, o.layout);
-    SplatGradient by_splat;
-    const double loss = render_loss_views(dress(o.layout, samples, p), visibility, world.views,
-                                          targets, raster, &by_splat)
-                            .sum();
+    DrawingGradient g;
+    const double loss = edge_loss(drawing, o.layout, visibility, world.views, targets, &g);
     if (step == 0) result.initial_loss = loss;
-    result.final_loss = loss;
-    const SketchGradient by_sketch =
-        evaluate_samples_backward(result.sketch, o.layout, {by_splat.mean, by_splat.tangent});
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(p.x.size());
-    g.head(p.nodes) = Eigen::Map<const Eigen::VectorXd>(by_sketch.nodes.data(), p.nodes);
-    g.segment(p.nodes, p.handles) =
-        Eigen::Map<const Eigen::VectorXd>(by_sketch.handles.data(), p.handles);
-    for (int i = 0; i < o.layout.size(); ++i) {
-      const int s = o.layout.stroke[i];
-      g[p.nodes + p.handles + s] += by_splat.across[i] * p.width(s);
-      g[p.nodes + p.handles + p.strokes + s] += by_splat.opacity[i] * p.depth(s);
-    }
     const double fade = std::pow(0.1, double(step) / options.steps);
-    adam.descend(g, rate * fade, &p.x);
+    adam.descend(to_vector(g.sketch.nodes, g.sketch.handles, g.log_width, g.log_depth), rate * fade,
+                 &x);
+    from_vector(x, &drawing);
   }
-  p.write(&result.sketch);
-  for (int s = 0; s < sketch.size(); ++s)
-    result.sketch.evidence[s].opacity = 1 - std::exp(-p.depth(s) * 1.75);
+  result.final_loss = edge_loss(drawing, o.layout, visibility, world.views, targets, nullptr);
+  result.sketch = drawing.sketch;
+  for (int s = 0; s < strokes; ++s)
+    result.sketch.evidence[s].opacity = 1 - std::exp(-drawing.depth[s] * 1.75);
   return result;
 }
 

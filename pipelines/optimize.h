@@ -7,6 +7,7 @@
 #include "edges/lift.h"
 #include "pipelines/observe.h"
 #include "raster/loss.h"
+#include "raster/splats.h"
 
 namespace sketchsplat {
 
@@ -24,8 +25,31 @@ struct OptimizeOptions {
   int gap = 4;              ///< samples: see sample_visibility
 };
 
-/// The edge maps that renderings are compared with.
+/// The edge maps that renderings are compared with, one per view; none if there are no steps.
 std::vector<EdgeTarget> make_targets(const EdgeWorld& world, const OptimizeOptions& options);
+
+/// Strokes as they are drawn: `width` and `depth` are one per stroke.
+struct Drawing {
+  Sketch sketch;
+  Eigen::VectorXd width;  ///< standard deviation of the splats across the stroke, world units, > 0
+  Eigen::VectorXd depth;  ///< optical depth of the splats at their middle, > 0
+};
+
+/// A Gaussian per sample: as long as its piece of the stroke, so that their sum is an even ridge.
+Splats draw_splats(const Drawing& drawing, const SampleLayout& layout);
+
+/// Gradient of a scalar by all that descends.
+struct DrawingGradient {
+  SketchGradient sketch;
+  Eigen::VectorXd log_width, log_depth;  ///< by the logarithms, one per stroke
+};
+
+/// Loss of the drawing against the edge maps, summed over the views, and its gradient (may be
+/// null): samples, splats, pictures, pixels and all the way back. `visibility` as in
+/// render_loss_views.
+double edge_loss(const Drawing& drawing, const SampleLayout& layout,
+                 const Eigen::MatrixXf& visibility, const std::vector<View>& views,
+                 const std::vector<EdgeTarget>& targets, DrawingGradient* gradient);
 
 struct OptimizeResult {
   Sketch sketch;

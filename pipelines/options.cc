@@ -13,7 +13,12 @@ struct Preset {
 
 const std::vector<Preset>& presets() {
   static const std::vector<Preset> list = {
-      {"fast", {{"steps", "0"}, {"rounds", "1"}, {"lift-views", "16"}}},
+      {"fast",
+       {{"steps", "0"},
+        {"rounds", "1"},
+        {"lift-views", "16"},
+        {"polish-rounds", "4"},
+        {"polish-spacing", "5"}}},
       {"balanced", {}},
       {"accurate", {{"steps", "60"}, {"lift-views", "49"}, {"lift-stride", "2"}}},
   };

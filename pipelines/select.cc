@@ -46,6 +46,22 @@ Claim claim(const Observation& o, int stroke, const std::vector<std::vector<char
   return c;
 }
 
+// The edgels of a stroke are its own: those that its samples found, and their neighbours in the
+// chain, which samples of another stroke on the same edge may find.
+void own(const EdgeWorld& world, const Observation& o, int stroke,
+         std::vector<std::vector<char>>* owned) {
+  constexpr int kBeside = 1;  // samples lie two pixels apart, edgels one
+  for (int i = o.matches.first[o.layout.first[stroke]];
+       i < o.matches.first[o.layout.first[stroke + 1]]; ++i) {
+    const SampleMatch& match = o.matches.matches[i];
+    const std::vector<Edgel>& edgels = world.maps[match.view].edgels;
+    const Edgel& e = edgels[match.edgel];
+    const int last = std::min(int(edgels.size()) - 1, match.edgel + kBeside);
+    for (int k = std::max(0, match.edgel - kBeside); k <= last; ++k)
+      if (std::hypot(edgels[k].x - e.x, edgels[k].y - e.y) < 2) (*owned)[match.view][k] = 1;
+  }
+}
+
 // Share of the sightings that must be in which there is an edgel; -1 if none must be.
 double seen_share(const EdgeWorld& world, const Observation& o, int stroke) {
   constexpr int kEvery = 3;  // samples: the hull is coarse
@@ -74,6 +90,10 @@ Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
   if (s.rms_px > options.max_rms_px + sigma) return Verdict::kScattered;
   if (s.bias_px > options.max_bias_px + sigma) return Verdict::kMoving;
   if (sharp > 0 && s.width_px > options.max_width * sharp) return Verdict::kBlurred;
+  // What lies dead still in many views is no contour, though its two sides look alike in others.
+  if (s.views >= 2 * options.min_views && s.rms_px <= options.max_rms_px &&
+      s.bias_px <= 0.5 * (options.max_bias_px + sigma))
+    return Verdict::kKept;
   const double moves = std::max(0.0, s.bias_px - sigma) / options.max_bias_px;
   if (seen >= 0 && seen < options.min_seen * (1 + moves)) return Verdict::kUnseen;
   return Verdict::kKept;
@@ -122,9 +142,7 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
       continue;
     }
     keep[i] = true;
-    for (int k = o.layout.first[i]; k < o.layout.first[i + 1]; ++k)
-      for (int m = o.matches.first[k]; m < o.matches.first[k + 1]; ++m)
-        owned[o.matches.matches[m].view][o.matches.matches[m].edgel] = 1;
+    own(world, o, i, &owned);
   }
   result.sketch = keep_strokes(sketch, keep);
   int next = 0;

@@ -85,7 +85,8 @@ double cost_of(const Sketch& sketch, const SampleLayout& layout, const Samples& 
 }  // namespace
 
 RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
-                           const SampleQuadratics& quadratics, const RefineSketchOptions& options) {
+                                 const SampleQuadratics& quadratics,
+                                 const RefineSketchOptions& options) {
   RefineSketchResult result;
   result.sketch = sketch;
   Sketch& s = result.sketch;
@@ -95,7 +96,7 @@ RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layou
   std::vector<double*> blocks;
   for (int i = 0; i < layout.size(); ++i) {
     const double strength = quadratics.information[i].trace();
-    if (!(strength > 0)) continue;
+    if (!(strength > 0) || !quadratics.slope.col(i).allFinite()) continue;
     trace += strength;
     const Stroke& stroke = s.strokes[layout.stroke[i]];
     auto* residual = new SampleResidual;
@@ -119,11 +120,15 @@ RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layou
   }
   if (problem.NumResidualBlocks() == 0) return result;
   const double hold = std::sqrt(options.stiffness * trace / problem.NumResidualBlocks());
-  problem.GetParameterBlocks(&blocks);
-  for (double* b : blocks)
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<Hold, 3, 3>(new Hold{hold, Eigen::Vector3d(b)}), nullptr,
-        b);
+  // By index: the solver itself lists blocks by address, which is another every time.
+  for (Eigen::Matrix3Xd* points : {&s.nodes, &s.handles})
+    for (int i = 0; i < points->cols(); ++i) {
+      double* block = points->col(i).data();
+      if (problem.HasParameterBlock(block))
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<Hold, 3, 3>(new Hold{hold, points->col(i)}), nullptr,
+            block);
+    }
   ceres::Solver::Options solver;
   solver.max_num_iterations = options.max_iterations;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;

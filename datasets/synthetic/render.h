@@ -21,7 +21,7 @@ struct RenderOptions {
 
 /// A picture of the mesh behind `tracer`: grey object under five lamps and a sky that stand still
 /// in the unit frame; linear light, filtered as Blender does (Blackman-Harris over 3 px), then
-/// sRGB; colour not premultiplied. Four by four rays per pixel where something changes, one
+/// sRGB; colour not premultiplied. Six by six rays per pixel where something changes, one
 /// elsewhere. `view` is in the unit frame. `hints`: 3 x N points along edges of the object, at most
 /// a pixel or two apart, where features thinner than a pixel may hide from the one ray. Noise is
 /// the same for the three colours; it depends on (seed, index, pixel) alone.

@@ -19,7 +19,7 @@ struct SynthesizeOptions {
   std::string part = "box-hole";  ///< one of part_names(), or the path of a .step or .stp file
   std::uint64_t seed = 1;         ///< of the part's dimensions, the cameras and the noise
   double extent = 1.0;            ///< longest side of the object [world units], > 0
-  double smooth_angle_deg = 0.5;  ///< faces that meet at less have no edge [deg], (0, 90)
+  double smooth_angle_deg = 1.0;  ///< faces that meet at less have no edge [deg], (0, 90)
   double deflection = 2e-5;       ///< of the triangles that are rendered [extents], [1e-6, 1e-2]
   RigOptions rig;
   RenderOptions render;
@@ -45,7 +45,8 @@ Picture render(const SyntheticScene& scene, int view);
 /// Writes a scene folder in the layout of ABC-NEF as EMAP ships it:
 ///   meta_data.json (last, so that a folder that has it is whole), color/<k>_colors.png,
 ///   groundtruth/gt.json: list of {"type", "closed", "points": [[x, y, z], ...],
-///     "visible_views": [n, ...] one per point, "dihedral_deg"}.
+///     "visible_views": [n, ...] one per point, "dihedral_deg"},
+///   groundtruth/sketch.json: the same edges as a sketch graph.
 /// Views are rendered in parallel (OpenMP). Throws OutputError.
 void write_scene(const SyntheticScene& scene, const std::string& folder);
 

@@ -3,7 +3,6 @@
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
-#include <BRepLib.hxx>
 #include <BRep_Tool.hxx>
 #include <Eigen/Geometry>
 #include <Geom2d_Curve.hxx>
@@ -19,7 +18,6 @@
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "datasets/synthetic/curve_kind.h"
 
@@ -35,14 +33,6 @@ constexpr double kDeflection = 1e-5;      // of the sampled truth
 constexpr double kSpacing = 0.005;
 
 Vector3d to_eigen(const gp_XYZ& v) { return {v.X(), v.Y(), v.Z()}; }
-
-bool is_sharp(const TopoDS_Edge& edge, const std::vector<TopoDS_Face>& faces) {
-  if (BRep_Tool::Degenerated(edge) || faces.empty()) return false;
-  if (faces.size() > 2) return true;
-  const bool seam = faces.size() == 1 && BRep_Tool::IsClosed(edge, faces[0]);
-  if (faces.size() == 1 && !seam) return true;  // the border of an open shell
-  return BRep_Tool::Continuity(edge, faces.front(), faces.back()) < GeomAbs_G1;
-}
 
 ParametricCurve in_unit_frame(const BRepAdaptor_Curve& curve, const UnitFrame& frame) {
   ParametricCurve out;
@@ -79,30 +69,50 @@ Vector3d face_normal(const TopoDS_Edge& edge, const TopoDS_Face& face, double t)
   return n.normalized() * (face.Orientation() == TopAbs_REVERSED ? -1.0 : 1.0);
 }
 
-// The free space at an edge lies along the sum of the normals, whether the edge is convex or not.
-void look_around(const TopoDS_Edge& edge, const std::vector<TopoDS_Face>& faces,
-                 const std::vector<double>& parameters, TruthCurve* curve) {
+// One of the two sides of an edge. A seam is used twice by one face, once in each direction.
+struct Side {
+  TopoDS_Edge edge;
+  TopoDS_Face face;
+};
+std::vector<Side> sides_of(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) {
+  std::vector<Side> sides;
+  for (const TopoDS_Shape& face : faces) sides.push_back({edge, TopoDS::Face(face)});
+  if (sides.size() == 1 && BRep_Tool::IsClosed(edge, sides[0].face))
+    sides.push_back({TopoDS::Edge(edge.Reversed()), sides[0].face});
+  return sides;
+}
+
+// Fills `outward` and `dihedral_deg`; returns the largest angle between the two normals [deg].
+// Measured, because BRepLib::EncodeRegularity leaves many tangent edges of real files unmarked.
+double look_around(const std::vector<Side>& sides, const std::vector<double>& parameters,
+                   TruthCurve* curve) {
   curve->outward = Matrix3Xd::Zero(3, parameters.size());
   curve->dihedral_deg = 180;
-  if (faces.size() != 2) return;
-  double sum = 0;
+  if (sides.size() != 2) return 180;
+  double sum = 0, largest = 0;
   int count = 0;
   for (size_t i = 0; i < parameters.size(); ++i) {
-    const Vector3d a = face_normal(edge, faces[0], parameters[i]);
-    const Vector3d b = face_normal(edge, faces[1], parameters[i]);
+    const Vector3d a = face_normal(sides[0].edge, sides[0].face, parameters[i]);
+    const Vector3d b = face_normal(sides[1].edge, sides[1].face, parameters[i]);
+    // The free space lies along the sum of the normals, whether the edge is convex or not.
     if ((a + b).norm() > 1e-3) curve->outward.col(i) = (a + b).normalized();
     if (a.isZero() || b.isZero()) continue;
-    sum += std::atan2(a.cross(b).norm(), a.dot(b));
+    const double angle = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI;
+    largest = std::max(largest, angle);
+    sum += angle;
     ++count;
   }
-  if (count > 0) curve->dihedral_deg = sum / count * 180 / M_PI;
+  if (count == 0) return 180;
+  curve->dihedral_deg = sum / count;
+  return largest;
 }
 
 class Collector {
  public:
   explicit Collector(const UnitFrame& frame) : frame_(frame) {}
 
-  void add(const TopoDS_Edge& edge, const std::vector<TopoDS_Face>& faces) {
+  void add_if_sharp(const TopoDS_Edge& edge, const std::vector<Side>& sides,
+                    double smooth_angle_deg) {
     const BRepAdaptor_Curve adaptor(edge);
     const ParametricCurve curve = in_unit_frame(adaptor, frame_);
     const std::vector<double> breaks = derivative_breaks(adaptor);
@@ -111,7 +121,7 @@ class Collector {
     out.points = polyline(curve, breaks, kDeflection, kSpacing, &parameters);
     const TopoDS_Vertex first = TopExp::FirstVertex(edge), last = TopExp::LastVertex(edge);
     out.closed = first.IsNull() || first.IsSame(last);
-    look_around(edge, faces, parameters, &out);
+    if (look_around(sides, parameters, &out) < smooth_angle_deg) return;
     add_strokes(adaptor, curve, breaks, first, last, &out);
     truth_.curves.push_back(std::move(out));
   }
@@ -185,15 +195,14 @@ class Collector {
 }  // namespace
 
 Truth sharp_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg) {
-  BRepLib::EncodeRegularity(*brep.shape, smooth_angle_deg * M_PI / 180);
   TopTools_IndexedDataMapOfShapeListOfShape faces_of_edge;
   TopExp::MapShapesAndUniqueAncestors(*brep.shape, TopAbs_EDGE, TopAbs_FACE, faces_of_edge);
   Collector collector(frame);
   for (int i = 1; i <= faces_of_edge.Extent(); ++i) {
     const TopoDS_Edge edge = TopoDS::Edge(faces_of_edge.FindKey(i));
-    std::vector<TopoDS_Face> faces;
-    for (const TopoDS_Shape& face : faces_of_edge(i)) faces.push_back(TopoDS::Face(face));
-    if (is_sharp(edge, faces)) collector.add(edge, faces);
+    const std::vector<Side> sides = sides_of(edge, faces_of_edge(i));
+    if (sides.empty() || BRep_Tool::Degenerated(edge)) continue;
+    collector.add_if_sharp(edge, sides, smooth_angle_deg);
   }
   return collector.take();
 }

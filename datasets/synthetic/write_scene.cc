@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include <png.h>
-
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "datasets/errors.h"
+#include "datasets/scene.h"
 #include "datasets/synthetic/synthesize.h"
+#include "sketches/io.h"
 
 namespace sketchsplat {
 namespace {
@@ -15,39 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-void rename_into_place(const std::string& temporary, const std::string& path) {
-  std::error_code error;
-  fs::rename(temporary, path, error);
-  if (error) throw OutputError(path, error.message());
-}
-
 void write_text(const std::string& path, const std::string& text) {
   const std::string temporary = path + ".part";
   std::ofstream out(temporary, std::ios::binary);
   out << text;
   out.close();
   if (!out) throw OutputError(path, "no way to write there");
-  rename_into_place(temporary, path);
-}
-
-// One PNG of a picture in [0, 1]; the fastest filter and level that still shrink it well.
-void write_picture(const std::string& path, const Picture& picture) {
-  const int w = picture.width(), h = picture.height(), channels = picture.alpha.empty() ? 3 : 4;
-  std::vector<unsigned char> bytes(size_t(w) * h * channels);
-  const Image<float>* planes[] = {&picture.red, &picture.green, &picture.blue, &picture.alpha};
-  for (size_t i = 0; i < size_t(w) * h; ++i)
-    for (int c = 0; c < channels; ++c)
-      bytes[i * channels + c] = (unsigned char)(std::lround(planes[c]->data[i] * 255));
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = w;
-  image.height = h;
-  image.format = channels == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
-  image.flags = PNG_IMAGE_FLAG_FAST;
-  const std::string temporary = path + ".part";
-  if (!png_image_write_to_file(&image, temporary.c_str(), 0, bytes.data(), 0, nullptr))
-    throw OutputError(path, image.message);
-  rename_into_place(temporary, path);
+  std::error_code error;
+  fs::rename(temporary, path, error);
+  if (error) throw OutputError(path, error.message());
 }
 
 json rows(const Eigen::MatrixXd& m) {
@@ -111,7 +88,7 @@ void write_scene(const SyntheticScene& scene, const std::string& folder) {
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < n; ++k) {
     try {
-      write_picture(folder + "/color/" + scene.views[k].name, render(scene, k));
+      write_png(folder + "/color/" + scene.views[k].name, render(scene, k));
     } catch (...) {
       failures[k] = std::current_exception();
     }
@@ -119,6 +96,9 @@ void write_scene(const SyntheticScene& scene, const std::string& folder) {
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
   write_text(folder + "/groundtruth/gt.json", ground_truth(scene.truth).dump());
+  std::ostringstream sketch;
+  write_sketch_json(sketch, scene.truth.sketch);
+  write_text(folder + "/groundtruth/sketch.json", sketch.str());
   write_text(folder + "/meta_data.json", meta_data(scene).dump(1));
 }
 

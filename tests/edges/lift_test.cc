@@ -166,6 +166,19 @@ TEST(Match, QuadraticTellsTheOffsetOfALineAcrossIt) {
   }
 }
 
+TEST(Match, SamplesAreHeldWeaklyAlongTheirCurve) {
+  const Eigen::Vector3d a(0.1, 0.5, 0.5), b(0.9, 0.5, 0.5);
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), {segment(a, b)});
+  const Matches m = match_samples(w, line_samples(a, b, 20), {});
+  for (int i = 2; i < 18; ++i) {
+    const Eigen::Vector3d t = Eigen::Vector3d::UnitX();
+    const double along = t.dot(m.information[i] * t), all = m.information[i].trace();
+    ASSERT_GT(all, 0);
+    EXPECT_GT(along, 1e-4 * all) << "or a few foreign edgels make the whole line slide";
+    EXPECT_LT(along, 0.05 * all) << "or lines cannot grow";
+  }
+}
+
 TEST(Match, AnEdgelBelongsToTheNearerOfTwoLinesFourPixelsApart) {
   const double gap = 4 * 3.0 / 500;
   const Eigen::Vector3d a(0.1, 0.5, 0.5), b(0.9, 0.5, 0.5), up(0, gap, 0);

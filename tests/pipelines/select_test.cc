@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/select.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/strokes.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using Eigen::Vector3d;
+const Vector3d kMiddle(0.5, 0.5, 0.5);
+constexpr double kPixel = 3.0 / 500;
+
+Sketch cube() {
+  Sketch s;
+  for (const Polyline& e : cube_edges({0.2, 0.2, 0.2}, 0.6)) add_line(&s, e[0], e[1]);
+  return s;
+}
+
+// A world in which view v sees curves(v).
+template <typename Curves>
+EdgeWorld world_of(int views, const Curves& curves) {
+  const std::vector<View> v = ring_of_views(views, kMiddle, 3);
+  std::vector<EdgelMap> maps;
+  for (int i = 0; i < views; ++i) maps.push_back(ideal_edgels(v[i], curves(i, v[i])));
+  return make_edge_world(v, maps);
+}
+
+TEST(Select, TrueEdgesAreKept) {
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), polylines_of(cube()));
+  const Selection s = select_strokes(cube(), w, {});
+  ASSERT_EQ(s.verdicts.size(), 12u);
+  EXPECT_EQ(s.sketch.size(), 12);
+  EXPECT_EQ(s.changes, 0);
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_EQ(s.verdicts[i], Verdict::kKept);
+    EXPECT_EQ(s.remap.stroke[i], i);
+    EXPECT_GT(s.stats[i].cover, 0.9);
+    EXPECT_LT(s.stats[i].rms_px, 0.1);
+    EXPECT_EQ(s.seen[i], -1) << "without masks no sighting is sure";
+  }
+}
+
+TEST(Select, TheContourOfASphereIsNoEdgeWhateverCircleStandsForIt) {
+  Sketch s = cube();
+  for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0.6, 0, 0.8)})
+    add_circle(&s, kMiddle, 0.25 * axis);
+  const EdgeWorld w = world_of(60, [](int, const View& v) {
+    std::vector<Polyline> seen = polylines_of(cube());
+    // The circle in which the sphere is touched by rays from the camera.
+    const Vector3d to_camera = v.center_in_world() - kMiddle, back = to_camera.normalized();
+    const double r = 0.25, near = r * r / to_camera.norm(), rim = std::sqrt(r * r - near * near);
+    const Vector3d right = v.cam_from_world.rotation.row(0);
+    const Vector3d x = (right - right.dot(back) * back).normalized();
+    seen.push_back(circle(kMiddle + near * back, rim * x, rim * back.cross(x)));
+    return seen;
+  });
+  const Selection out = select_strokes(s, w, {});
+  EXPECT_EQ(out.sketch.size(), 12);
+  for (int i = 12; i < 15; ++i) EXPECT_NE(out.verdicts[i], Verdict::kKept);
+}
+
+TEST(Select, TheContourOfACylinderIsNoEdgeButItsRimsAre) {
+  constexpr double kRadius = 0.25;
+  Sketch s;
+  add_circle(&s, {0.5, 0.5, 0.2}, {0, 0, kRadius});
+  add_circle(&s, {0.5, 0.5, 0.8}, {0, 0, kRadius});
+  for (int k = 0; k < 8; ++k) {
+    const Vector3d side(kRadius * std::cos(k * 0.8), kRadius * std::sin(k * 0.8), 0);
+    add_line(&s, Vector3d(0.5, 0.5, 0.2) + side, Vector3d(0.5, 0.5, 0.8) + side);
+  }
+  const EdgeWorld w = world_of(60, [&](int, const View& v) {
+    std::vector<Polyline> seen = {polyline_of(s, 0), polyline_of(s, 1)};
+    const Vector3d c = v.center_in_world() - kMiddle;
+    const double away = std::hypot(c.x(), c.y());
+    if (away <= 1.05 * kRadius) return seen;
+    for (int sign : {-1, 1}) {
+      const double a = std::atan2(c.y(), c.x()) + sign * std::acos(kRadius / away);
+      const Vector3d side(kRadius * std::cos(a), kRadius * std::sin(a), 0);
+      seen.push_back(segment(Vector3d(0.5, 0.5, 0.2) + side, Vector3d(0.5, 0.5, 0.8) + side));
+    }
+    return seen;
+  });
+  const Selection out = select_strokes(s, w, {});
+  EXPECT_EQ(out.verdicts[0], Verdict::kKept);
+  EXPECT_EQ(out.verdicts[1], Verdict::kKept);
+  EXPECT_EQ(out.sketch.size(), 2);
+}
+
+TEST(Select, OfTwoStrokesOnOneEdgeOneIsKept) {
+  Sketch s = cube();
+  add_line(&s, {0.2, 0.2 + 0.3 * kPixel, 0.2}, {0.8, 0.2, 0.2});  // all of an edge, again
+  add_line(&s, {0.3, 0.2, 0.2 - 0.2 * kPixel}, {0.5, 0.2, 0.2});  // a part of it
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), polylines_of(cube()));
+  const Selection out = select_strokes(s, w, {});
+  EXPECT_EQ(out.sketch.size(), 12);
+  EXPECT_EQ(out.changes, 2);
+  EXPECT_EQ(out.verdicts[13], Verdict::kRedundant);
+  int redundant = 0;
+  for (Verdict v : out.verdicts) redundant += v == Verdict::kRedundant;
+  EXPECT_EQ(redundant, 2);
+  int next = 0;  // those that stay keep their order
+  for (int i = 0; i < s.size(); ++i)
+    EXPECT_EQ(out.remap.stroke[i], out.verdicts[i] == Verdict::kKept ? next++ : -1);
+}
+
+TEST(Select, AStrokeThatTooFewViewsSeeIsUncovered) {
+  const SelectOptions options;
+  Sketch s = cube();
+  const int rare = add_line(&s, {0.3, 0.5, 0.4}, {0.7, 0.6, 0.6});
+  for (int seeing : {options.min_views - 1, options.min_views + 4}) {
+    const EdgeWorld w = world_of(20, [&](int i, const View&) {
+      std::vector<Polyline> seen = polylines_of(cube());
+      if (i % 2 == 0 && i / 2 < seeing) seen.push_back(polyline_of(s, rare));
+      return seen;
+    });
+    const Verdict expected = seeing < options.min_views ? Verdict::kUncovered : Verdict::kKept;
+    EXPECT_EQ(select_strokes(s, w, options).verdicts[rare], expected) << seeing << " views";
+  }
+}
+
+TEST(Select, ParallelEdgesFourPixelsApartAreTwo) {
+  Sketch s;
+  const Vector3d gap(0, 2.8 * kPixel, 2.8 * kPixel);
+  add_line(&s, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
+  add_line(&s, Vector3d(0.1, 0.5, 0.5) + gap, Vector3d(0.9, 0.5, 0.5) + gap);
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), polylines_of(s));
+  EXPECT_EQ(select_strokes(s, w, {}).sketch.size(), 2);
+}
+
+TEST(Select, SaysWhyAStrokeFalls) {
+  Sketch s = cube();
+  const int tiny = add_line(&s, {0.2, 0.2, 0.3}, {0.2, 0.2, 0.3 + 2 * kPixel});
+  const int soft = add_line(&s, {0.3, 0.5, 0.4}, {0.7, 0.5, 0.45});
+  const int shaky = add_line(&s, {0.3, 0.6, 0.6}, {0.7, 0.62, 0.6});
+  const int nowhere = add_line(&s, {40, 40, 40}, {41, 40, 40});
+  const std::vector<View> views = ring_of_views(20, kMiddle, 3);
+  std::vector<EdgelMap> maps;
+  for (const View& v : views) {
+    std::vector<Polyline> seen = polylines_of(cube());
+    const size_t sharp = ideal_edgels(v, seen).edgels.size();
+    seen.push_back(polyline_of(s, soft));
+    const size_t soft_end = ideal_edgels(v, seen).edgels.size();
+    seen.push_back(polyline_of(s, shaky));
+    maps.push_back(ideal_edgels(v, seen));
+    std::vector<Edgel>& e = maps.back().edgels;
+    for (size_t i = sharp; i < soft_end; ++i) e[i].width = 3;
+    for (size_t i = soft_end; i < e.size(); ++i) {  // to and fro within a pixel
+      const float d = 0.8f * float(std::sin(2.4 * double(i)));
+      e[i].x += d * e[i].nx, e[i].y += d * e[i].ny;
+    }
+    build_lookup(&maps.back(), 4.0);
+  }
+  const Selection out = select_strokes(s, make_edge_world(views, maps), {});
+  EXPECT_EQ(out.verdicts[tiny], Verdict::kShort);
+  EXPECT_EQ(out.verdicts[soft], Verdict::kBlurred);
+  EXPECT_EQ(out.verdicts[shaky], Verdict::kScattered);
+  EXPECT_EQ(out.verdicts[nowhere], Verdict::kUncovered);
+  EXPECT_EQ(out.sketch.size(), 12);
+  EXPECT_STREQ(verdict_name(Verdict::kShort), "short");
+  EXPECT_STREQ(verdict_name(Verdict::kRedundant), "redundant");
+}
+
+TEST(Select, WhatAFewViewsSeeAndManyMustSeeIsNoEdge) {
+  // A mark in the middle of a face, in 5 of some 30 views that look at this face.
+  Sketch s = cube();
+  const int mark = add_line(&s, {0.35, 0.45, 0.8}, {0.65, 0.55, 0.8});
+  for (bool everybody : {false, true}) {
+    const std::vector<View> views = ring_of_views(70, kMiddle, 3);
+    std::vector<EdgelMap> maps;
+    for (const View& v : views) {
+      std::vector<Polyline> seen = polylines_of(cube());
+      const bool in_front = v.center_in_world().z() > 1.2;
+      if (in_front && (everybody || maps.size() % 6 == 0)) seen.push_back(polyline_of(s, mark));
+      maps.push_back(ideal_edgels(v, seen));
+      maps.back().mask = convex_mask(v, cube_corners({0.2, 0.2, 0.2}, 0.6));
+    }
+    const Selection out = select_strokes(s, make_edge_world(views, maps), {});
+    EXPECT_EQ(out.verdicts[mark], everybody ? Verdict::kKept : Verdict::kUnseen);
+    EXPECT_EQ(out.sketch.size(), everybody ? 13 : 12);
+    EXPECT_GT(out.seen[0], 0.8);
+  }
+}
+
+TEST(Select, OfNothingIsNothing) {
+  const EdgeWorld w = ideal_world(ring_of_views(8, kMiddle, 3), polylines_of(cube()));
+  const Selection none = select_strokes(Sketch(), w, {});
+  EXPECT_EQ(none.sketch.size(), 0);
+  EXPECT_EQ(none.changes, 0);
+  const std::vector<View> views = ring_of_views(5, kMiddle, 3);
+  const EdgeWorld blank = make_edge_world(views, std::vector<EdgelMap>(5));
+  EXPECT_EQ(select_strokes(cube(), blank, {}).sketch.size(), 0);
+}
+
+}  // namespace
+}  // namespace sketchsplat
