@@ -341,8 +341,9 @@ Eigen::Matrix3Xd sample_segments(const Eigen::Matrix3Xd& polyline, double interv
 }
 
 GroundTruth find_ground_truth(const std::string& path) {
-  const bool folder = fs::is_directory(path);
-  if (!folder && !fs::exists(path)) throw InputError(path, "ground truth", "nothing there");
+  std::error_code none;
+  const bool folder = fs::is_directory(path, none);
+  if (!folder && !fs::exists(path, none)) throw InputError(path, "ground truth", "nothing there");
   const fs::path file = folder ? truth_file_of_scene(path) : fs::path(path);
   if (file.empty()) {
     throw InputError(path, "ground truth (gt/, groundtruth/, *_features_*.yml, gt.json)", "none");

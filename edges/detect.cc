@@ -43,6 +43,7 @@ Composite composite(const Picture& picture, const DetectOptions& options) {
     box = opaque_box(picture.alpha);
     if (box.empty()) return c;
     box = cv::Rect(box.x - border, box.y - border, box.width + 2 * border, box.height + 2 * border);
+    box &= cv::Rect(0, 0, w, h);  // an object that leaves the image does not end at its frame
   }
   c.x0 = box.x, c.y0 = box.y;
   c.value.create(box.height, box.width);
@@ -50,11 +51,9 @@ Composite composite(const Picture& picture, const DetectOptions& options) {
   for (int v = 0; v < box.height; ++v)
     for (int u = 0; u < box.width; ++u) {
       const int x = u + box.x, y = v + box.y;
-      const bool in = x >= 0 && y >= 0 && x < w && y < h;
-      const float a = !in ? 0.f : masked ? picture.alpha.at(x, y) : 1.f;
-      const float grey = !in ? 0.f
-                             : 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
-                                   0.114f * picture.blue.at(x, y);
+      const float a = masked ? picture.alpha.at(x, y) : 1.f;
+      const float grey = 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
+                         0.114f * picture.blue.at(x, y);
       c.value(v, u) = masked ? a * (grey + float(options.pedestal)) : grey;
       c.inside(v, u) = a >= 1.f;
     }

@@ -25,7 +25,8 @@ Image<int> integral(const Image<uint8_t>& mask) {
 // Does a box of half size r around (x, y) touch the mask? What leaves the image is not judged.
 bool touches(const Image<int>& sum, double x, double y, double r) {
   const int w = sum.width - 1, h = sum.height - 1;
-  if (x < 0 || y < 0 || x > w - 1 || y > h - 1) return true;
+  if (!(x >= 0 && y >= 0 && x <= w - 1 && y <= h - 1)) return true;
+  r = std::min(r, double(w + h));  // a box around the camera itself has no bounds
   const int x0 = std::max(0, int(x - r)), x1 = std::min(w, int(x + r) + 2);
   const int y0 = std::max(0, int(y - r)), y1 = std::min(h, int(y + r) + 2);
   return sum.at(x1, y1) - sum.at(x0, y1) - sum.at(x1, y0) + sum.at(x0, y0) > 0;

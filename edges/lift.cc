@@ -111,7 +111,7 @@ bool Sweeper::make_ray(int view, const Edgel& e, Ray* ray) const {
   double s1;
   if (!clip(world_.bounds, ray->center, ray->direction, &ray->s0, &s1)) return false;
   ray->step = world_.footprint;
-  ray->count = std::min(4096, int((s1 - ray->s0) / ray->step) + 1);
+  ray->count = int(std::min(4095.0, (s1 - ray->s0) / ray->step)) + 1;
   return true;
 }
 
@@ -256,7 +256,7 @@ std::vector<int> pick(const EdgelMap& map, const std::vector<char>& explained, d
 
 std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& options) {
   std::vector<EdgePoint> points;
-  if (world.bounds.isEmpty()) return points;
+  if (world.bounds.isEmpty() || !(world.footprint > 0)) return points;
   const Sweeper sweeper(world, options);
   const int n = int(world.views.size());
   std::vector<std::vector<char>> explained(n);

@@ -46,7 +46,7 @@ void drop_accidents(const CurvePoints& samples, const MatchOptions& options,
     while (m < matches->size() && (*matches)[m].sample < samples.first[c + 1]) ++m;
     const int n = samples.first[c + 1] - samples.first[c];
     const int count = int(m - begin);
-    if (count < std::max(std::min(n, 3), int(options.min_run * n))) continue;
+    if (count == 0 || count < std::max(std::min(n, 3), int(options.min_run * n))) continue;
     if (options.max_bias > 0) {
       std::vector<float> d;
       for (size_t k = begin; k < m; ++k) d.push_back((*matches)[k].distance_px);

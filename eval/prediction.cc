@@ -203,8 +203,9 @@ std::string file_of(const std::string& folder) {
 }  // namespace
 
 Prediction read_prediction(const std::string& path) {
-  if (!fs::exists(path)) throw InputError(path, "predicted edges", "nothing there");
-  const std::string file = fs::is_directory(path) ? file_of(path) : path;
+  std::error_code none;
+  if (!fs::exists(path, none)) throw InputError(path, "predicted edges", "nothing there");
+  const std::string file = fs::is_directory(path, none) ? file_of(path) : path;
   const std::string extension = fs::path(file).extension().string();
   Prediction prediction;
   if (extension == ".json") {
@@ -218,7 +219,8 @@ Prediction read_prediction(const std::string& path) {
   } else if (extension == ".obj") {
     prediction = read_obj(file);
   } else {
-    throw InputError(file, "predicted edges as .json, .ply or .obj", extension);
+    throw InputError(file, "predicted edges as .json, .ply or .obj",
+                     extension.empty() ? "a name without an ending" : extension);
   }
   prediction.path = file;
   return prediction;

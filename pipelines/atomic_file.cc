@@ -47,7 +47,8 @@ void write_atomically(const std::string& path, const std::function<void(std::ost
 void prepare_output_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) {
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) {
     throw OutputError(folder, error ? error.message() : "a file of that name");
   }
   const Leftover probe = {folder + "/.probe" + std::to_string(getpid())};

@@ -33,7 +33,7 @@ struct Verb {
 /// Parses the command line, runs the verb, maps exceptions to one line on stderr and an ExitStatus.
 int run_command_line(int argc, const char* const* argv, const std::vector<Verb>& verbs);
 
-/// All verbs and their options as a Markdown table, for the README.
+/// All verbs and their options as Markdown tables: OPTIONS.md.
 std::string options_markdown(const std::vector<Verb>& verbs);
 
 // The verbs, a file each (cli_<verb>.cc).

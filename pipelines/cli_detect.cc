@@ -32,9 +32,9 @@ std::string map_folder(const DetectArguments& arguments) {
 }
 
 // Returns the number of edgels.
-size_t write_map(const Scene& scene, View view, const DetectArguments& arguments) {
+size_t write_map(const Scene& scene, const View& view, const DetectArguments& arguments) {
   const EdgelMap map =
-      detect_view(scene, arguments.detector, arguments.edges, arguments.maps, &view);
+      detect_view(scene, arguments.detector, arguments.edges, arguments.maps, view);
   // Edge maps are PNG, whatever the picture was.
   const std::string name = std::filesystem::path(view.name).replace_extension(".png").string();
   write_png(map_folder(arguments) + "/" + name, draw_edge_map(map, arguments.ridge_px));

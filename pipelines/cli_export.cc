@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -25,7 +26,8 @@ const std::vector<std::string> kFormats = {"step", "obj", "ply", "parametric", "
 
 // The format that the ending of a file name stands for; empty if none.
 std::string format_of(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".step" || ending == ".stp") return "step";
   if (ending == ".obj") return "obj";
   if (ending == ".ply") return "ply";
@@ -36,7 +38,8 @@ std::string format_of(const std::string& path) {
 // Accepts the folder that `reconstruct` wrote, too.
 Sketch read_sketch(const std::string& given) {
   namespace fs = std::filesystem;
-  const std::string path = fs::is_directory(given) ? given + "/sketch.json" : given;
+  std::error_code none;
+  const std::string path = fs::is_directory(given, none) ? given + "/sketch.json" : given;
   std::ifstream in(path);
   if (!in) throw InputError(path, "a sketch.json", "no file that can be read");
   return read_sketch_json(in, path);

@@ -22,7 +22,7 @@ struct Choice {
 };
 
 /// One member of an options struct as users see it: the flag, its line in --help, its record in
-/// report.json and its row in the README are all made from this.
+/// report.json and its row in OPTIONS.md are all made from this.
 struct Field {
   std::string name;  ///< "merge-px": flag --merge-px, key in the report
   std::variant<bool*, int*, double*, std::string*, Choice> value;

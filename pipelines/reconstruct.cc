@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/reconstruct.h"
 
+#include "datasets/errors.h"
 #include "pipelines/stages.h"
 
 namespace sketchsplat {
@@ -23,6 +24,8 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
     if (options.simplify && !round.changed) break;
   }
   sketch = finish_sketch(sketch, world, options, &report, progress);
+  if (sketch.size() == 0)
+    throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   return {sketch, report};
 }
 

@@ -13,7 +13,7 @@ struct Reconstruction {
   RunReport report;
 };
 
-/// The edges of the object in the scene. Throws TooLittleError if the images hold too little,
+/// The edges of the object in the scene, at least one. Throws TooLittleError if there is none,
 /// InputError if the detector needs files that are not there. `progress` may be null.
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
                            Progress* progress);

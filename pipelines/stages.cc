@@ -2,6 +2,7 @@
 #include "pipelines/stages.h"
 
 #include <cstdio>
+#include <exception>
 
 #include "datasets/errors.h"
 #include "edges/link.h"
@@ -21,20 +22,17 @@ std::string map_name(const std::string& detector) {
 }  // namespace
 
 EdgelMap detect_view(const Scene& scene, const std::string& detector, const DetectOptions& detect,
-                     const MapOptions& maps, View* view) {
-  EdgelMap map;
+                     const MapOptions& maps, const View& view) {
   const std::string name = map_name(detector);
-  if (name.empty()) {
-    map = detect_edges(read_picture(view->image_path), detect);
-  } else {
-    const std::string path = edge_map_path(scene, *view, name);
-    if (path.empty())
-      throw InputError(scene.folder, "an edge map '" + name + "' of " + view->name, "none");
-    map = detect_ridges(read_grey(path), maps);
-  }
-  view->camera.width = map.width;
-  view->camera.height = map.height;
-  return map;
+  if (name.empty()) return detect_edges(read_picture(view), detect);
+  const std::string path = edge_map_path(scene, view, name);
+  if (path.empty())
+    throw InputError(scene.folder, "an edge map '" + name + "' of " + view.name, "none");
+  const Image<float> map = read_grey(path);
+  if (map.width != view.camera.width || map.height != view.camera.height)
+    throw InputError(path, "a map of the image's size",
+                     std::to_string(map.width) + " x " + std::to_string(map.height) + " px");
+  return detect_ridges(map, maps);
 }
 
 EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
@@ -44,15 +42,20 @@ EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, Ru
   std::vector<View> views = scene.views;
   std::vector<EdgelMap> maps(n);
   std::vector<std::string> complaints(n);
+  std::vector<std::exception_ptr> failures(n);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < n; ++i) {
     try {
-      maps[i] = detect_view(scene, options.detector, options.detect, options.maps, &views[i]);
+      maps[i] = detect_view(scene, options.detector, options.detect, options.maps, views[i]);
     } catch (const InputError& e) {
       complaints[i] = e.what();
+    } catch (...) {
+      failures[i] = std::current_exception();  // must not leave the parallel loop
     }
     stage.step();
   }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
   std::vector<View> good_views;
   std::vector<EdgelMap> good_maps;
   size_t edgels = 0, with_edges = 0;

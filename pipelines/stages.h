@@ -15,10 +15,10 @@ namespace sketchsplat {
 EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
                        Progress* progress);
 
-/// Edgels of one view by the detector: "image" or "maps:NAME". Throws InputError. Fills width and
-/// height of the view's camera.
+/// Edgels of one view by the detector: "image" or "maps:NAME". Throws InputError, also if the image
+/// or map has another size than the view.
 EdgelMap detect_view(const Scene& scene, const std::string& detector, const DetectOptions& detect,
-                     const MapOptions& maps, View* view);
+                     const MapOptions& maps, const View& view);
 
 /// The space sweep over all edgels. Throws TooLittleError if no point is found.
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,

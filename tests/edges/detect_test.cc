@@ -106,6 +106,17 @@ TEST(Detect, TheOutlineIsWhereAlphaSaysWhateverColourHidesBehindIt) {
   }
 }
 
+TEST(Detect, TheFrameOfTheImageIsNoOutline) {
+  Picture p = grey_picture(40, 40);
+  p.alpha = Image<float>(40, 40, 1.f);
+  EXPECT_TRUE(detect_edges(p, {}).edgels.empty()) << "opaque all over";
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 20; ++x) p.alpha.at(x, y) = 0;
+  const EdgelMap map = detect_edges(p, {});
+  EXPECT_GE(map.edgels.size(), 30u);
+  for (const Edgel& e : map.edgels) EXPECT_NEAR(e.x, 19.5, 0.1) << "the object ends here alone";
+}
+
 TEST(Detect, EmptyFlatAndTransparentPicturesGiveNoEdgels) {
   EXPECT_TRUE(detect_edges({}, {}).edgels.empty());
   EXPECT_TRUE(detect_edges(grey_picture(1, 1), {}).edgels.empty());

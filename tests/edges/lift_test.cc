@@ -210,5 +210,16 @@ TEST(Match, SamplesBehindTheCameraOutsideOrNowhereMatchNothing) {
   EXPECT_TRUE(match_samples(w, nan, {}).matches.empty());
 }
 
+TEST(Match, CurveWithoutSamplesMatchesNothing) {
+  EdgeWorld world;
+  world.views.resize(1), world.maps.resize(1), world.plane_normal.resize(1);
+  MatchOptions options;
+  options.max_bias = 0.5;
+  const Matches m =
+      match_samples(world, {Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0), {0, 0}}, options);
+  EXPECT_TRUE(m.matches.empty());
+  EXPECT_EQ(m.sigma_px, 0);
+}
+
 }  // namespace
 }  // namespace sketchsplat

@@ -94,6 +94,7 @@ TEST_F(AtomicFile, FolderInPlaceOfAFileIsRefused) {
   EXPECT_THROW(prepare_output_folder(folder_ / "file" / "below"), OutputError);
   EXPECT_THROW(prepare_output_folder("/proc/sketchsplat"), OutputError);
   EXPECT_THROW(prepare_output_folder(""), OutputError);
+  EXPECT_THROW(prepare_output_folder(folder_ / std::string(300, 'a')), OutputError);
 }
 
 }  // namespace

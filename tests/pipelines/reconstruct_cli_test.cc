@@ -92,8 +92,27 @@ TEST_F(Chain, ExportGivesTheFilesOfTheReconstruction) {
   }
   ASSERT_EQ(run("export " + in_folder("result") + " -o " + in_folder("a.step")).status, 0);
   EXPECT_THAT(text_of_file(folder_ / "a.step"), testing::StartsWith("ISO-10303-21;"));
+  EXPECT_EQ(run("export " + in_folder("result") + " -o " + in_folder("A.STEP")).status, 0);
   EXPECT_EQ(run("export " + in_folder("result") + " -o " + in_folder("a.xyz")).status, kWrongUsage);
   EXPECT_EQ(run("export " + in_folder("nothing") + " -o " + in_folder("a.obj")).status, kBadInput);
+}
+
+TEST_F(Program, ImpossibleNamesAreNoDefect) {
+  const std::string name(300, 'a');  // longer than file systems allow
+  const std::string s = scene();
+  EXPECT_EQ(run("reconstruct " + s + " --out " + in_folder(name)).status, kNoOutput);
+  EXPECT_EQ(run("export " + name + " --out " + in_folder("a.obj")).status, kBadInput);
+  EXPECT_EQ(run("evaluate --pred " + name + " --gt " + s).status, kBadInput);
+}
+
+TEST_F(Program, ImagesOfAnotherSizeThanTheSceneSaysAreStatus3) {
+  const std::string s = scene();
+  std::string json = text_of_file(fs::path(s) / "meta_data.json");
+  json.replace(json.find("\"height\": 48"), 12, "\"height\": 96");
+  std::ofstream(fs::path(s) / "meta_data.json") << json;
+  const Outcome o = run("reconstruct " + s + " -q --out " + in_folder("result"));
+  EXPECT_EQ(o.status, kBadInput);
+  EXPECT_THAT(o.err, testing::HasSubstr("64 x 96"));
 }
 
 TEST_F(Program, SceneWithTooLittleIsStatus4) {

@@ -185,6 +185,12 @@ TEST_F(BoxHole, PicturesWithoutAnyEdgeAreTooLittle) {
   EXPECT_THROW(reconstruct(scene, {}, nullptr), InputError) << "and none at all is an error";
 }
 
+TEST_F(BoxHole, NoCurveThatEnoughViewsSeeIsTooLittle) {
+  ReconstructOptions options;
+  options.select.min_views = 1000;  // there are 24
+  EXPECT_THROW(reconstruct(*scene_, options, nullptr), TooLittleError);
+}
+
 TEST_F(BoxHole, PicturesUnderWrongPosesGiveLessThanThePartOrARefusal) {
   Scene scene = *scene_;  // every picture under the pose of another: what meets, meets by chance
   const size_t n = scene.views.size();
