@@ -52,7 +52,7 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
 }
 
 std::string part_words() {
-  std::string words = "A STEP file or one of";
+  std::string words = "A STEP file, a mesh (OBJ, STL, PLY, OFF) or one of";
   for (const std::string& name : part_names()) words += " " + name;
   return words;
 }
@@ -76,6 +76,8 @@ void list_scene_fields(SynthesizeOptions* o, Fields* f) {
   f->add("extent", &o->extent, "world units", 1e-9, 1e9, "Longest side of the object");
   f->add("smooth-angle", &o->smooth_angle_deg, "deg", 0.01, 89,
          "Faces that meet at less have no edge");
+  f->add("crease-angle", &o->crease_deg, "deg", 1, 180,
+         "Facets of a mesh that meet at more have an edge");
 }
 
 }  // namespace
@@ -93,7 +95,8 @@ Verb synthesize_verb() {
   verb.name = "synthesize";
   verb.summary = "Render a part with exact ground truth as a scene";
   verb.examples = {"sketchsplat synthesize --out scenes/part",
-                   "sketchsplat synthesize bracket.step --out scenes/bracket --views 30 --noise 3"};
+                   "sketchsplat synthesize bracket.step --out scenes/bracket --views 30 --noise 3",
+                   "sketchsplat synthesize bracket.stl --out scenes/bracket --crease-angle 40"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {
     run_synthesize(*arguments, common, progress);

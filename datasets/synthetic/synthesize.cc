@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "datasets/errors.h"
+#include "datasets/synthetic/mesh_part.h"
 #include "datasets/synthetic/parts.h"
 
 namespace sketchsplat {
@@ -21,6 +22,7 @@ void require(const char* name, double value, double low, double high) {
 void check(const SynthesizeOptions& o) {
   require("extent", o.extent, 1e-12, 1e12);
   require("smooth angle", o.smooth_angle_deg, 1e-9, 90);
+  require("crease angle", o.crease_deg, 1, 180);
   require("deflection", o.deflection, 1e-6, 1e-2);
   require("views", o.rig.views, 1, 100000);
   require("resolution", o.rig.resolution, 16, 8192);
@@ -59,6 +61,16 @@ void count_views(const Tracer& tracer, const std::vector<View>& views, double li
   }
 }
 
+MeshPart make_object(const SynthesizeOptions& options) {
+  if (is_mesh_file(options.part))
+    return make_mesh_part(read_mesh(options.part), options.crease_deg, options.part);
+  const Brep brep =
+      is_step_file(options.part) ? read_step(options.part) : make_part(options.part, options.seed);
+  const UnitFrame frame = unit_frame(brep, options.part);
+  return {tessellate(brep, frame, options.deflection),
+          sharp_edges(brep, frame, options.smooth_angle_deg)};
+}
+
 Eigen::Matrix3Xd all_points(const Truth& truth) {
   Eigen::Index n = 0;
   for (const TruthCurve& curve : truth.curves) n += curve.points.cols();
@@ -75,17 +87,15 @@ Eigen::Matrix3Xd all_points(const Truth& truth) {
 
 SyntheticScene synthesize(const SynthesizeOptions& options) {
   check(options);
-  const Brep brep =
-      is_step_file(options.part) ? read_step(options.part) : make_part(options.part, options.seed);
-  const UnitFrame frame = unit_frame(brep, options.part);
-  Truth truth = sharp_edges(brep, frame, options.smooth_angle_deg);
+  auto [surface, truth] = make_object(options);
   if (truth.curves.empty()) throw InputError(options.part, "a part with sharp edges", "none");
-  const Tracer tracer(tessellate(brep, frame, options.deflection));
+  const Tracer tracer(surface);
   const std::vector<View> unit_views = make_rig(options.rig, options.seed);
   const double lift = std::max(2e-4, 10 * options.deflection);
-  const int n = int(truth.curves.size());
+  std::vector<TruthCurve>& curves = truth.curves;
+  const int n = int(curves.size());
 #pragma omp parallel for schedule(dynamic)
-  for (int i = 0; i < n; ++i) count_views(tracer, unit_views, lift, &truth.curves[i]);
+  for (int i = 0; i < n; ++i) count_views(tracer, unit_views, lift, &curves[i]);
   const Vector3d shift = Vector3d::Constant(0.5 * options.extent);
   return {options,
           transformed(truth, options.extent, shift),

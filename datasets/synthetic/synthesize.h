@@ -16,11 +16,12 @@
 namespace sketchsplat {
 
 struct SynthesizeOptions {
-  std::string part = "box-hole";  ///< one of part_names(), or the path of a .step or .stp file
+  std::string part = "box-hole";  ///< one of part_names(), or the path of a STEP or mesh file
   std::uint64_t seed = 1;         ///< of the part's dimensions, the cameras and the noise
   double extent = 1.0;            ///< longest side of the object [world units], > 0
   double smooth_angle_deg = 1.0;  ///< faces that meet at less have no edge [deg], (0, 90)
-  double deflection = 2e-5;       ///< of the triangles that are rendered [extents], [1e-6, 1e-2]
+  double crease_deg = 30.0;  ///< faces of a mesh that meet at more have an edge [deg], [1, 180]
+  double deflection = 2e-5;  ///< of the triangles that are rendered [extents], [1e-6, 1e-2]
   RigOptions rig;
   RenderOptions render;
 };
