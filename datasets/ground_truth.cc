@@ -71,17 +71,6 @@ std::string model_id(const fs::path& file) {
   return name.substr(0, name.find('_'));
 }
 
-Eigen::Matrix3Xd concatenate(const std::vector<Eigen::Matrix3Xd>& parts) {
-  Eigen::Index count = 0, at = 0;
-  for (const auto& part : parts) count += part.cols();
-  Eigen::Matrix3Xd all(3, count);
-  for (const auto& part : parts) {
-    all.middleCols(at, part.cols()) = part;
-    at += part.cols();
-  }
-  return all;
-}
-
 bool is_closed(const Eigen::Matrix3Xd& polyline) {
   const Eigen::Index n = polyline.cols();
   if (n < 3) return false;
@@ -316,6 +305,17 @@ void undo_world_to_gt(const fs::path& scene, GroundTruth* truth) {
 }
 
 }  // namespace
+
+Eigen::Matrix3Xd concatenate(const std::vector<Eigen::Matrix3Xd>& parts) {
+  Eigen::Index count = 0, at = 0;
+  for (const auto& part : parts) count += part.cols();
+  Eigen::Matrix3Xd all(3, count);
+  for (const auto& part : parts) {
+    all.middleCols(at, part.cols()) = part;
+    at += part.cols();
+  }
+  return all;
+}
 
 double floor_divide(double a, double b) {
   if (b == 0) return a / b;

@@ -57,4 +57,7 @@ inline double linspace01(int i, int count) {
 /// segment, both of its ends included, from its second point to its first. 3 x N.
 Eigen::Matrix3Xd sample_segments(const Eigen::Matrix3Xd& polyline, double interval);
 
+/// Columns one set after the other.
+Eigen::Matrix3Xd concatenate(const std::vector<Eigen::Matrix3Xd>& parts);
+
 }  // namespace sketchsplat

@@ -91,17 +91,6 @@ Eigen::Matrix3Xd cubic_by_arc_length(const Cubic& c, double step) {
 
 }  // namespace
 
-Eigen::Matrix3Xd concatenate(const std::vector<Eigen::Matrix3Xd>& parts) {
-  Eigen::Index count = 0, at = 0;
-  for (const auto& part : parts) count += part.cols();
-  Eigen::Matrix3Xd all(3, count);
-  for (const auto& part : parts) {
-    all.middleCols(at, part.cols()) = part;
-    at += part.cols();
-  }
-  return all;
-}
-
 Eigen::Matrix3Xd as_float(const Eigen::Matrix3Xd& points) {
   return points.cast<float>().cast<double>();
 }

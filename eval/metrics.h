@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "datasets/ground_truth.h"
 #include "eval/prediction.h"
 
 namespace sketchsplat {
@@ -45,8 +46,5 @@ Score score(const Eigen::Matrix3Xd& prediction, const Eigen::Matrix3Xd& truth,
 
 /// Coordinates rounded to float32, as the published evaluators keep them.
 Eigen::Matrix3Xd as_float(const Eigen::Matrix3Xd& points);
-
-/// Columns one set after the other.
-Eigen::Matrix3Xd concatenate(const std::vector<Eigen::Matrix3Xd>& parts);
 
 }  // namespace sketchsplat
