@@ -14,6 +14,8 @@ struct GroundTruth {
     Eigen::Matrix3Xd polyline;  ///< 3 x N points on the curve in order; closed: first = last
     bool sharp = true;          ///< only these count as edges
     bool closed = false;
+    /// How many views see each point (as many as the polyline has); empty if the file does not say.
+    std::vector<int> visible_views = {};
   };
   std::string path;           ///< file that the curves (or, without curves, the samples) are from
   std::string format;         ///< "abc", "curves", "samples" or "sketch"

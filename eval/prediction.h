@@ -7,6 +7,13 @@
 
 namespace sketchsplat {
 
+/// What a file tells about a stroke beside where it is.
+struct StrokeFacts {
+  std::string name;    ///< as the file calls it, or its index
+  std::string kind;    ///< "line", "arc", "circle", "ellipse", "bezier", "polyline"
+  int parameters = 0;  ///< degrees of freedom, see eval/parameters.h
+};
+
 /// Edges to be judged: primitives, or points that are taken as the samples as they are.
 struct Prediction {
   std::string path;                                 ///< file that was read
@@ -17,6 +24,7 @@ struct Prediction {
   /// Samples of each stroke, 3 x N each: which primitives or points belong together. Empty if the
   /// file does not say; then every primitive is a stroke of its own.
   std::vector<Eigen::Matrix3Xd> strokes;
+  std::vector<StrokeFacts> facts;  ///< of each stroke; as many, or none if the file does not say
 };
 
 /// Reads by name and content:
