@@ -39,7 +39,8 @@ struct GroundTruth {
 ///     lines and circles come from their parameters;
 ///   - a folder with such a file, flat or as feat/ + obj/ + sampled_pts/;
 ///   - JSON with curves as points: a list of {type, points, closed}, or {scale, offset, curves:
-///     [{type, points_mm}]} where world = points_mm * scale + offset; or a sketch graph;
+///     [{type, points_mm}]} where world = points_mm * scale + offset; or a sketch graph. A curve
+///     may have visible_views, a number a point;
 ///   - `*.ply`: samples;
 ///   - a scene folder with one of these in gt/ or groundtruth/ or as `*gt*.json`, or below
 ///     groundtruth/ of a folder above, called like the scene; `worldtogt` of its meta_data.json

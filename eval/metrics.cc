@@ -158,7 +158,9 @@ Eigen::Matrix3Xd sample_arc_length(const Prediction& prediction, double step) {
   return concatenate(parts);
 }
 
-Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing) {
+Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing,
+                         std::vector<int>* nearest) {
+  if (nearest) nearest->clear();
   if (polyline.cols() == 0) return polyline;
   std::vector<Eigen::Matrix3Xd> parts;
   for (Eigen::Index k = 0; k + 1 < polyline.cols(); ++k) {
@@ -168,10 +170,29 @@ Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing) {
     for (int i = 0; i < count; ++i) {
       const double w = double(i) / count;
       parts.back().col(i) = a * (1 - w) + b * w;
+      if (nearest) nearest->push_back(int(k) + (w < 0.5 ? 0 : 1));
     }
   }
   parts.push_back(polyline.rightCols<1>());
+  if (nearest) nearest->push_back(int(polyline.cols()) - 1);
   return concatenate(parts);
+}
+
+Eigen::Matrix3Xd resample(const Eigen::Matrix3Xd& polyline, double spacing) {
+  if (polyline.cols() < 2) return polyline;
+  std::vector<double> at(size_t(polyline.cols()), 0.0);
+  for (Eigen::Index i = 1; i < polyline.cols(); ++i) {
+    at[size_t(i)] = at[size_t(i) - 1] + (polyline.col(i) - polyline.col(i - 1)).norm();
+  }
+  return resample(polyline, at, std::max(1, int(std::ceil(at.back() / spacing))));
+}
+
+double polyline_length(const Eigen::Matrix3Xd& polyline) {
+  double length = 0;
+  for (Eigen::Index i = 1; i < polyline.cols(); ++i) {
+    length += (polyline.col(i) - polyline.col(i - 1)).norm();
+  }
+  return length;
 }
 
 Eigen::Matrix3Xd voxel_average(const Eigen::Matrix3Xd& points, int count, double low, double high) {

@@ -20,7 +20,15 @@ Eigen::Matrix3Xd sample_published(const Prediction& prediction, double step);
 Eigen::Matrix3Xd sample_arc_length(const Prediction& prediction, double step);
 
 /// Each segment of a polyline (3 x N) cut into int(length / spacing) pieces, at least one.
-Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing);
+/// `nearest`: which point of the polyline each sample is nearest to along it.
+Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing,
+                         std::vector<int>* nearest = nullptr);
+
+/// A polyline (3 x N, N >= 1) at equal steps of its length of at most `spacing`, both ends
+/// included.
+Eigen::Matrix3Xd resample(const Eigen::Matrix3Xd& polyline, double spacing);
+
+double polyline_length(const Eigen::Matrix3Xd& polyline);
 
 /// Mean of the points in each of `count`^3 voxels over [low, high]^3; points outside fall into
 /// voxels beyond and are kept. Ordered by voxel.

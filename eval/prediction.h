@@ -28,10 +28,12 @@ struct Prediction {
 };
 
 /// Reads by name and content:
-///   *.json  EMAP's {lines_end_pts, curves_ctl_pts}, {lines, curves}, {points}, or a sketch graph
+///   *.json  EMAP's {lines_end_pts, curves_ctl_pts}, {lines, curves}, {points}, a sketch graph, or
+///           NEF's {scene_name, curves_ctl_pts}, brought to the frame of ABC-NEF's scenes
 ///   *.ply   points, with the strokes if a property tells (edge_points.ply, gaussians_all.ply)
 ///   *.obj   `v` and `l`: each consecutive pair of an `l` is a line, each `o` (or `l`) a stroke
-///   folder  the first of parametric_edges.json (with the strokes of edge_points.ply beside it),
+///   folder  the first of parametric_edges.json (with the strokes of sketch.json or
+///           edge_points.ply beside it),
 ///           fitting/parametric_edges.json, gaussians_all.ply, edge_points.ply, sketch.json,
 ///           sketch.obj
 /// Throws InputError.

@@ -4,7 +4,10 @@
 #include <Eigen/Core>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "eval/prediction.h"
 
 namespace sketchsplat {
 
@@ -34,18 +37,19 @@ struct Junctions {
 /// take a share of; lengths are fractions of the object's longest side.
 struct Structure {
   int strokes = 0, edges = 0;
-  int matched = 0;       ///< pairs
-  double f = 0;          ///< 2 matched / (strokes + edges)
-  double precision = 0;  ///< matched / strokes
-  double recall = 0;     ///< matched / edges
-  int right_type = 0;    ///< pairs whose stroke is of the edge's kind, see eval/kinds.h
+  int matched = 0;                         ///< pairs
+  std::vector<std::pair<int, int>> pairs;  ///< stroke and edge, best first
+  double f = 0;                            ///< 2 matched / (strokes + edges)
+  double precision = 0;                    ///< matched / strokes
+  double recall = 0;                       ///< matched / edges
+  int right_type = 0;  ///< pairs whose stroke is of the edge's kind, see kind_of_edge()
   double right_type_share = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no kinds, no pairs
   double strokes_per_edge = 0;
   Junctions junctions;
   /// Share of the predicted length that runs beside another stroke, see eval/duplicates.h.
   double duplicated = std::numeric_limits<double>::quiet_NaN();
   double length = 0, true_length = 0;
-  double length_error = 0;  ///< (length - true_length) / true_length
+  double length_error = 0;  ///< (length - true_length) / true_length, per cent
   /// Numbers that the curves are made of, see eval/parameters.h. NaN if kinds are not known.
   double parameters = std::numeric_limits<double>::quiet_NaN();
   double true_parameters = 0;
@@ -59,8 +63,14 @@ struct Structure {
 
 /// A stroke (samples, 3 x N) may be paired with an edge if at least 85 % of it lie within 0.005 of
 /// the edge and 85 % of the edge within 0.005 of it; the best pairs are taken first. Fills counts,
-/// shares and what is visible; junctions, lengths, kinds and numbers are other functions' business.
+/// shares and what is visible, nothing else.
 Structure match_strokes(const std::vector<Eigen::Matrix3Xd>& strokes,
                         const std::vector<TrueEdge>& edges);
+
+/// All of it. `facts`: as many as strokes, or none. Strokes are joined as the edges are before
+/// their junctions are looked for, so that a smooth chain of cubics has none within.
+Structure compare_structure(const std::vector<Eigen::Matrix3Xd>& strokes,
+                            const std::vector<StrokeFacts>& facts,
+                            const std::vector<TrueEdge>& edges);
 
 }  // namespace sketchsplat
