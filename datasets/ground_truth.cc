@@ -353,6 +353,11 @@ Eigen::Matrix3Xd sample_segments(const Eigen::Matrix3Xd& polyline, double interv
   return Eigen::Map<Eigen::Matrix3Xd>(out.data(), 3, Eigen::Index(out.size() / 3));
 }
 
+bool has_ground_truth(const std::string& path) {
+  std::error_code none;
+  return fs::is_directory(path, none) ? !truth_file_of_scene(path).empty() : fs::exists(path, none);
+}
+
 GroundTruth find_ground_truth(const std::string& path) {
   std::error_code none;
   const bool folder = fs::is_directory(path, none);

@@ -48,6 +48,9 @@ struct GroundTruth {
 /// Throws InputError (nothing there, broken, no sharp curve).
 GroundTruth find_ground_truth(const std::string& path);
 
+/// Would find_ground_truth() find a file there (broken or not)?
+bool has_ground_truth(const std::string& path);
+
 /// Python's and numpy's a // b for floats: not floor(a / b). 0.015 // 0.005 is 2.
 double floor_divide(double a, double b);
 

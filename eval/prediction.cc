@@ -232,14 +232,14 @@ Prediction read_obj(const std::string& path) {
   return prediction;
 }
 
+// Empty if the folder holds none.
 std::string file_of(const std::string& folder) {
   for (const char* name : {"parametric_edges.json", "fitting/parametric_edges.json",
                            "gaussians_all.ply", "edge_points.ply", "sketch.json", "sketch.obj"}) {
     const fs::path file = fs::path(folder) / name;
     if (fs::is_regular_file(file)) return file.string();
   }
-  throw InputError(folder, "parametric_edges.json, edge_points.ply, sketch.json or sketch.obj",
-                   "none of them");
+  return "";
 }
 
 // parametric_edges.json cuts arcs into cubics; the files beside it tell what belongs together.
@@ -256,10 +256,19 @@ void read_strokes_beside(const fs::path& folder, Prediction* prediction) {
 
 }  // namespace
 
+bool has_prediction(const std::string& path) {
+  std::error_code none;
+  return fs::is_directory(path, none) ? !file_of(path).empty() : fs::exists(path, none);
+}
+
 Prediction read_prediction(const std::string& path) {
   std::error_code none;
   if (!fs::exists(path, none)) throw InputError(path, "predicted edges", "nothing there");
   const std::string file = fs::is_directory(path, none) ? file_of(path) : path;
+  if (file.empty()) {
+    throw InputError(path, "parametric_edges.json, edge_points.ply, sketch.json or sketch.obj",
+                     "none of them");
+  }
   const std::string extension = fs::path(file).extension().string();
   Prediction prediction;
   if (extension == ".json") {

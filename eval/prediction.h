@@ -39,4 +39,7 @@ struct Prediction {
 /// Throws InputError.
 Prediction read_prediction(const std::string& path);
 
+/// Is there a file that read_prediction() would read (broken or not)?
+bool has_prediction(const std::string& path);
+
 }  // namespace sketchsplat
