@@ -38,6 +38,14 @@ std::vector<Corner> junctions_of(const std::vector<TrueEdge>& edges) {
 
 double percent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0; }
 
+// Without any junction on either side there is nothing to be right or wrong about.
+void fill_shares(Junctions* j) {
+  if (j->predicted + j->truth == 0) return;
+  j->precision = percent(j->matched, j->predicted);
+  if (j->truth > 0) j->recall = percent(j->matched, j->truth);
+  j->f = percent(2 * j->matched, j->predicted + j->truth);
+}
+
 }  // namespace
 
 std::vector<MeetingPoint> meeting_points(const std::vector<Eigen::Matrix3Xd>& curves) {
@@ -100,9 +108,7 @@ Junctions match_junctions(const std::vector<TrueEdge>& prediction,
     if (theirs[j].visible) ++visible_found;
   }
   for (const Corner& corner : theirs) result.truth_visible += corner.visible;
-  result.precision = percent(result.matched, result.predicted);
-  result.recall = percent(result.matched, result.truth);
-  result.f = percent(2 * result.matched, result.predicted + result.truth);
+  fill_shares(&result);
   if (result.truth_visible > 0) {
     result.recall_visible = percent(visible_found, result.truth_visible);
   }

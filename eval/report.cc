@@ -65,8 +65,9 @@ ordered_json json_of(const Structure& s, bool has_visibility) {
   out["recall"] = s.recall;
   out["right_type"] = or_null(s.right_type_share);
   const Junctions& j = s.junctions;
-  out["junctions"] = {{"predicted", j.predicted}, {"truth", j.truth},   {"matched", j.matched},
-                      {"precision", j.precision}, {"recall", j.recall}, {"f", j.f}};
+  out["junctions"] = {{"predicted", j.predicted},    {"truth", j.truth},
+                      {"matched", j.matched},        {"precision", or_null(j.precision)},
+                      {"recall", or_null(j.recall)}, {"f", or_null(j.f)}};
   out["duplicated"] = or_null(s.duplicated);
   out["length"] = s.length;
   out["true_length"] = s.true_length;

@@ -39,6 +39,10 @@ std::vector<ScenePair> find_scenes(const std::string& predictions, const std::st
     if (!entry.is_directory(none) || !has_ground_truth(entry.path().string())) continue;
     scenes.push_back({name, entry.path().string(), prediction_of(predictions, name)});
   }
+  const auto found = [](const ScenePair& scene) { return !scene.prediction.empty(); };
+  if (!scenes.empty() && std::none_of(scenes.begin(), scenes.end(), found)) {
+    throw InputError(predictions, "results called like the scenes in " + truth, "none");
+  }
   if (scenes.empty()) {
     throw InputError(truth, "ground truth (gt/, groundtruth/, gt.json), or scenes that have it",
                      "none");

@@ -30,7 +30,7 @@ bool is_folder_of_scenes(const std::string& truth);
 
 /// Sub-folders of `truth` that hold a ground truth, by name; the prediction is NAME, NAME.json,
 /// NAME.obj, NAME.ply or record_NAME_stage2_cubic.json (NEF) in `predictions`. Throws InputError if
-/// there is no such scene, or no such folder of predictions.
+/// there is no such scene, no such folder of predictions, or no prediction of any scene.
 std::vector<ScenePair> find_scenes(const std::string& predictions, const std::string& truth);
 
 /// Throws InputError; also if a prediction is there but broken: that is no missing one.

@@ -28,7 +28,10 @@ std::vector<TrueEdge> merge_smooth(std::vector<TrueEdge> edges);
 struct Junctions {
   int predicted = 0, truth = 0;
   int matched = 0;  ///< pairs, one to one, nearest first, at most 0.005 apart
-  double precision = 0, recall = 0, f = 0;
+  /// NaN if there are none in the truth (recall), or in neither (precision, f).
+  double precision = std::numeric_limits<double>::quiet_NaN();
+  double recall = std::numeric_limits<double>::quiet_NaN();
+  double f = std::numeric_limits<double>::quiet_NaN();
   int truth_visible = 0;  ///< junctions of the truth that can be seen
   double recall_visible = std::numeric_limits<double>::quiet_NaN();  ///< NaN if nobody knows
 };

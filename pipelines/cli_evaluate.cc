@@ -107,9 +107,6 @@ void evaluate_folder(const EvaluateArguments& arguments, Progress* progress) {
     prepare_output_folder(out);
     write_worst(results.back().evaluation, scene.truth, out, arguments.overlays, progress);
   }
-  if (results.empty()) {
-    throw InputError(arguments.prediction, "results called like the scenes", "none");
-  }
   write_files(arguments, scenes_to_json(results), results);
   std::cout << scenes_to_table(results);
 }
