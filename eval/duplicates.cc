@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kNear = 5e-3;
 constexpr double kSpacing = 1e-3;
+constexpr double kReach = 0.6;  // of a piece, from its middle: to its end and a little more
 const double kParallel = std::cos(15 * M_PI / 180);
 
 struct Sample {
@@ -57,7 +58,7 @@ bool runs_beside(const Sample& a, const Sample& b) {
   if (a.stroke == b.stroke) return false;
   const Eigen::Vector3d offset = b.position - a.position;
   return offset.squaredNorm() < kNear * kNear && std::abs(a.tangent.dot(b.tangent)) > kParallel &&
-         std::abs(offset.dot(b.tangent)) <= (a.length + b.length) / 2;
+         std::abs(offset.dot(b.tangent)) <= kReach * b.length;
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ TEST(Compare, WhatNobodySeesNeedNotBeFound) {
   // Seen: three sides and 0.405 of the fourth (as far as the middle of two points), of which the
   // 0.005 beside the corner are found.
   EXPECT_NEAR(e.fine.levels[0].recall_visible, 100 * 3.005 / 3.405, 0.05);
-  EXPECT_NEAR(e.fine.levels[0].recall, 100 * 3.01 / 4, 0.05);
+  EXPECT_NEAR(e.fine.levels[0].recall, 100 * 3.01 / 4, 0.1);
   EXPECT_GT(e.fine.levels[0].f_visible, e.fine.levels[0].f);
   EXPECT_EQ(e.published.levels[0].recall_visible > e.published.levels[0].recall, true);
   EXPECT_EQ(e.structure.junctions.truth_visible, 4) << "the other side shows the far corner";
