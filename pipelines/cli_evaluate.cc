@@ -67,7 +67,7 @@ void check_usage(const EvaluateArguments& arguments) {
     throw UsageError("--overlays needs --out, the folder to write them to");
   }
   std::error_code none;
-  if (arguments.overlays > 0 && !fs::is_directory(arguments.truth, none)) {
+  if (arguments.overlays > 0 && fs::is_regular_file(arguments.truth, none)) {
     throw UsageError("--overlays needs the scene's folder as --gt, for its images");
   }
 }
