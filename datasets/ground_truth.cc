@@ -155,6 +155,17 @@ Eigen::Matrix3Xd points_of(const json& list, const std::string& path) {
   return points;
 }
 
+// As many numbers as the curve has points in the file; none if the file does not say.
+std::vector<int> visible_views_of(const json& item, Eigen::Index points, const std::string& path) {
+  if (!item.contains("visible_views") || item["visible_views"].empty()) return {};
+  const auto views = item["visible_views"].get<std::vector<int>>();
+  if (Eigen::Index(views.size()) != points) {
+    throw InputError(path, std::to_string(points) + " visible_views, one a point",
+                     std::to_string(views.size()));
+  }
+  return views;
+}
+
 GroundTruth read_point_curves(const json& document, const std::string& path) {
   GroundTruth truth;
   truth.path = path;
@@ -170,15 +181,17 @@ GroundTruth read_point_curves(const json& document, const std::string& path) {
   for (const json& item : list) {
     const bool in_raw = item.contains("points_mm");
     Eigen::Matrix3Xd points = points_of(item.at(in_raw ? "points_mm" : "points"), path);
+    std::vector<int> views = visible_views_of(item, points.cols(), path);
     const bool closed = item.value("closed", is_closed(points));
     if (closed && !is_closed(points)) {
+      if (!views.empty()) views.push_back(views.front());
       points.conservativeResize(3, points.cols() + 1);
       points.rightCols<1>() = points.col(0);
     }
     const bool sharp = item.value("sharp", true);
     if (in_raw && sharp) raw.push_back(sample_segments(points, kPublishedInterval));
     if (in_raw) points = ((points * truth.raw_scale).colwise() + offset).eval();
-    truth.curves.push_back({lower(item.value("type", "other")), points, sharp, closed});
+    truth.curves.push_back({lower(item.value("type", "other")), points, sharp, closed, views});
   }
   if (truth.raw_scale > 0) set_samples(raw, offset, &truth);
   return truth;
@@ -338,6 +351,11 @@ Eigen::Matrix3Xd sample_segments(const Eigen::Matrix3Xd& polyline, double interv
     }
   }
   return Eigen::Map<Eigen::Matrix3Xd>(out.data(), 3, Eigen::Index(out.size() / 3));
+}
+
+bool has_ground_truth(const std::string& path) {
+  std::error_code none;
+  return fs::is_directory(path, none) ? !truth_file_of_scene(path).empty() : fs::exists(path, none);
 }
 
 GroundTruth find_ground_truth(const std::string& path) {

@@ -14,6 +14,8 @@ struct GroundTruth {
     Eigen::Matrix3Xd polyline;  ///< 3 x N points on the curve in order; closed: first = last
     bool sharp = true;          ///< only these count as edges
     bool closed = false;
+    /// How many views see each point (as many as the polyline has); empty if the file does not say.
+    std::vector<int> visible_views = {};
   };
   std::string path;           ///< file that the curves (or, without curves, the samples) are from
   std::string format;         ///< "abc", "curves", "samples" or "sketch"
@@ -37,13 +39,17 @@ struct GroundTruth {
 ///     lines and circles come from their parameters;
 ///   - a folder with such a file, flat or as feat/ + obj/ + sampled_pts/;
 ///   - JSON with curves as points: a list of {type, points, closed}, or {scale, offset, curves:
-///     [{type, points_mm}]} where world = points_mm * scale + offset; or a sketch graph;
+///     [{type, points_mm}]} where world = points_mm * scale + offset; or a sketch graph. A curve
+///     may have visible_views, a number a point;
 ///   - `*.ply`: samples;
 ///   - a scene folder with one of these in gt/ or groundtruth/ or as `*gt*.json`, or below
 ///     groundtruth/ of a folder above, called like the scene; `worldtogt` of its meta_data.json
 ///     is undone.
 /// Throws InputError (nothing there, broken, no sharp curve).
 GroundTruth find_ground_truth(const std::string& path);
+
+/// Would find_ground_truth() find a file there (broken or not)?
+bool has_ground_truth(const std::string& path);
 
 /// Python's and numpy's a // b for floats: not floor(a / b). 0.015 // 0.005 is 2.
 double floor_divide(double a, double b);

@@ -22,6 +22,16 @@ struct EvaluateOptions {
   Protocol protocol = Protocol::kSketchSplat;
 };
 
+/// A curve that stands out for its errors.
+struct CurveScore {
+  std::string name;  ///< index in its file; joined edges "3+4"
+  std::string type;  ///< of an edge as the truth calls it; a stroke's kind or empty
+  double length = 0;
+  double share = 0;           ///< of its length within 0.005 of the other side, per cent
+  double worst = 0;           ///< largest distance to the other side; infinite if that is empty
+  Eigen::Matrix3Xd polyline;  ///< 3 x N, world units
+};
+
 /// How good predicted edges are. Lengths are fractions of the object's longest side
 /// (times 1000: the "mm" of the published tables); shares are per cent.
 struct Evaluation {
@@ -37,6 +47,10 @@ struct Evaluation {
   Structure structure;      ///< strokes against true edges, smooth continuations joined
   bool has_curves = true;   ///< false: the truth is samples only, `fine` uses these, no `structure`
   bool has_strokes = true;  ///< false: the prediction is points of no stroke, no `structure`
+  bool has_visibility = false;  ///< the truth says what can be seen (by two views or more)
+  /// At most five each, none of them perfect: true edges with the least recall (all of them, smooth
+  /// continuations joined), strokes with the least precision; then by length, longest first.
+  std::vector<CurveScore> worst_edges, worst_strokes;
 };
 
 /// Compares a prediction with the ground truth. Both are brought to the unit cube first if the

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eval/metrics.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -89,7 +90,43 @@ Eigen::Matrix3Xd cubic_by_arc_length(const Cubic& c, double step) {
   return resample(polyline, at, std::max(1, int(at.back() / step)));
 }
 
+Eigen::VectorXd selected(const Eigen::VectorXd& values, const std::vector<bool>& wanted) {
+  Eigen::VectorXd out(std::count(wanted.begin(), wanted.end(), true));
+  Eigen::Index at = 0;
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i]) out[at++] = values[Eigen::Index(i)];
+  }
+  return out;
+}
+
+double share_below(const Eigen::VectorXd& values, double threshold) {
+  if (values.size() == 0) return 0;
+  return double((values.array() < threshold).count()) / double(values.size());
+}
+
+double f_of(double p, double r) { return 2 * p * r / (p + r + 1e-7); }
+
+// Rearranges the values.
+double percentile(std::vector<double>* values, double share) {
+  const double rank = share * double(values->size() - 1);
+  const auto low = values->begin() + std::ptrdiff_t(rank);
+  std::nth_element(values->begin(), low, values->end());
+  const double weight = rank - std::floor(rank);
+  if (weight == 0) return *low;
+  return *low + (*std::min_element(low + 1, values->end()) - *low) * weight;
+}
+
 }  // namespace
+
+Spread spread_of(const Eigen::VectorXd& distances) {
+  Spread spread;
+  if (distances.size() == 0) return spread;
+  std::vector<double> values(distances.data(), distances.data() + distances.size());
+  spread.median = percentile(&values, 0.5);
+  spread.p95 = percentile(&values, 0.95);
+  spread.worst = distances.maxCoeff();
+  return spread;
+}
 
 Eigen::Matrix3Xd as_float(const Eigen::Matrix3Xd& points) {
   return points.cast<float>().cast<double>();
@@ -121,7 +158,9 @@ Eigen::Matrix3Xd sample_arc_length(const Prediction& prediction, double step) {
   return concatenate(parts);
 }
 
-Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing) {
+Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing,
+                         std::vector<int>* nearest) {
+  if (nearest) nearest->clear();
   if (polyline.cols() == 0) return polyline;
   std::vector<Eigen::Matrix3Xd> parts;
   for (Eigen::Index k = 0; k + 1 < polyline.cols(); ++k) {
@@ -131,10 +170,29 @@ Eigen::Matrix3Xd densify(const Eigen::Matrix3Xd& polyline, double spacing) {
     for (int i = 0; i < count; ++i) {
       const double w = double(i) / count;
       parts.back().col(i) = a * (1 - w) + b * w;
+      if (nearest) nearest->push_back(int(k) + (w < 0.5 ? 0 : 1));
     }
   }
   parts.push_back(polyline.rightCols<1>());
+  if (nearest) nearest->push_back(int(polyline.cols()) - 1);
   return concatenate(parts);
+}
+
+Eigen::Matrix3Xd resample(const Eigen::Matrix3Xd& polyline, double spacing) {
+  if (polyline.cols() < 2) return polyline;
+  std::vector<double> at(size_t(polyline.cols()), 0.0);
+  for (Eigen::Index i = 1; i < polyline.cols(); ++i) {
+    at[size_t(i)] = at[size_t(i) - 1] + (polyline.col(i) - polyline.col(i - 1)).norm();
+  }
+  return resample(polyline, at, std::max(1, int(std::ceil(at.back() / spacing))));
+}
+
+double polyline_length(const Eigen::Matrix3Xd& polyline) {
+  double length = 0;
+  for (Eigen::Index i = 1; i < polyline.cols(); ++i) {
+    length += (polyline.col(i) - polyline.col(i - 1)).norm();
+  }
+  return length;
 }
 
 Eigen::Matrix3Xd voxel_average(const Eigen::Matrix3Xd& points, int count, double low, double high) {
@@ -158,24 +216,38 @@ Eigen::Matrix3Xd voxel_average(const Eigen::Matrix3Xd& points, int count, double
 }
 
 Score score(const Eigen::Matrix3Xd& prediction, const Eigen::Matrix3Xd& truth,
-            const std::vector<double>& thresholds) {
+            const std::vector<double>& thresholds, const std::vector<bool>& visible) {
   assert(truth.cols() > 0);
+  assert(visible.empty() || Eigen::Index(visible.size()) == truth.cols());
   Score result;
   result.samples = int(prediction.cols());
   result.truth_samples = int(truth.cols());
   const bool empty = prediction.cols() == 0;
   const Eigen::VectorXd to_truth = NearestPoints(truth).distances(prediction);
   const Eigen::VectorXd to_prediction = NearestPoints(prediction).distances(truth);
+  const Eigen::VectorXd visible_to_prediction = selected(to_prediction, visible);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   result.accuracy = empty ? nan : to_truth.mean();
   result.completeness = empty ? nan : to_prediction.mean();
+  result.visible_samples = int(visible_to_prediction.size());
+  const bool seen = result.visible_samples > 0;
+  if (!empty) {
+    result.to_truth = spread_of(to_truth);
+    result.to_prediction = spread_of(to_prediction);
+    if (seen) result.completeness_visible = visible_to_prediction.mean();
+  }
   for (double threshold : thresholds) {
-    Level level{threshold};
-    const double p = empty ? 0 : double((to_truth.array() < threshold).count()) / to_truth.size();
-    const double r = double((to_prediction.array() < threshold).count()) / to_prediction.size();
+    Level level;
+    level.threshold = threshold;
+    const double p = share_below(to_truth, threshold), r = share_below(to_prediction, threshold);
     level.precision = 100 * p;
     level.recall = 100 * r;
-    level.f = 100 * 2 * p * r / (p + r + 1e-7);
+    level.f = 100 * f_of(p, r);
+    if (seen) {
+      const double r_visible = share_below(visible_to_prediction, threshold);
+      level.recall_visible = 100 * r_visible;
+      level.f_visible = 100 * f_of(p, r_visible);
+    }
     result.levels.push_back(level);
   }
   return result;

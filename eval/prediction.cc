@@ -11,6 +11,7 @@
 
 #include "datasets/errors.h"
 #include "datasets/ply.h"
+#include "eval/parameters.h"
 #include "sketches/curve.h"
 #include "sketches/io.h"
 
@@ -89,6 +90,35 @@ void add_stroke(const Sketch& sketch, int s, Prediction* prediction) {
     for (const auto& cubic : to_cubics(sketch, s)) prediction->curves.push_back(cubic);
   }
   prediction->strokes.push_back(sample_stroke(sketch, s, stroke_length(sketch, s) / kPieces));
+  const std::string kind = kind_name(sketch.strokes[s].kind);
+  prediction->facts.push_back({std::to_string(s), kind, degrees_of_freedom(kind)});
+}
+
+// NEF's files hold cubics (or, of its first stage, lines) in cells of a 256^3 grid over
+// [-1.2, 1.2]^3, x and y exchanged.
+bool is_nef(const json& document) {
+  return document.contains("scene_name") && document.contains("curves_ctl_pts") &&
+         !document.contains("lines_end_pts");
+}
+
+template <typename Points>
+void nef_to_world(std::vector<Points>* curves) {
+  for (Points& c : *curves) {
+    c = (c.array() / 256 * 2.4 - 1.2).matrix().eval();
+    c.row(0).swap(c.row(1));
+  }
+}
+
+void read_nef(const json& document, const std::string& path, Prediction* prediction) {
+  const json& curves = document["curves_ctl_pts"];
+  const bool lines = curves.is_array() && !curves.empty() && curves[0].size() == 2;
+  if (lines) {
+    prediction->lines = groups_of<2>(document, {"curves_ctl_pts"}, path);
+  } else {
+    prediction->curves = groups_of<4>(document, {"curves_ctl_pts"}, path);
+  }
+  nef_to_world(&prediction->lines);
+  nef_to_world(&prediction->curves);
 }
 
 Prediction read_json(const std::string& path) {
@@ -107,6 +137,8 @@ Prediction read_json(const std::string& path) {
       const auto points = groups_of<1>(document, {"points"}, path);
       prediction.points.resize(3, points.size());
       for (size_t i = 0; i < points.size(); ++i) prediction.points.col(i) = points[i];
+    } else if (is_nef(document)) {
+      read_nef(document, path, &prediction);
     } else if (document.contains("lines_end_pts") || document.contains("curves_ctl_pts") ||
                document.contains("lines") || document.contains("curves")) {
       prediction.lines = groups_of<2>(document, {"lines", "lines_end_pts"}, path);
@@ -157,6 +189,8 @@ Prediction read_obj(const std::string& path) {
   Prediction prediction;
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::vector<double>> strokes;
+  std::vector<std::string> names;
+  std::string name;
   bool grouped = false, begins = true;
   for (std::string text; std::getline(in, text);) {
     std::istringstream line(text);
@@ -168,8 +202,12 @@ Prediction read_obj(const std::string& path) {
       vertices.push_back(p);
     } else if (key == "o") {
       grouped = begins = true;
+      std::getline(line >> std::ws, name);
     } else if (key == "l") {
-      if (begins || !grouped) strokes.emplace_back();
+      if (begins || !grouped) {
+        strokes.emplace_back();
+        names.push_back(name.empty() ? std::to_string(names.size()) : name);
+      }
       begins = false;
       for (int last = -1; line >> word;) {
         const int at = vertex_of(word, int(vertices.size()), path);
@@ -184,36 +222,58 @@ Prediction read_obj(const std::string& path) {
       }
     }
   }
-  for (const auto& stroke : strokes) {
-    if (!stroke.empty()) prediction.strokes.push_back(samples_along(stroke));
+  for (size_t i = 0; i < strokes.size(); ++i) {
+    if (strokes[i].empty()) continue;
+    prediction.strokes.push_back(samples_along(strokes[i]));
+    const int segments = int(strokes[i].size() / 6);
+    prediction.facts.push_back({names[i], segments == 1 ? "line" : "polyline",
+                                degrees_of_freedom_of_polyline(segments + 1)});
   }
   return prediction;
 }
 
+// Empty if the folder holds none.
 std::string file_of(const std::string& folder) {
   for (const char* name : {"parametric_edges.json", "fitting/parametric_edges.json",
                            "gaussians_all.ply", "edge_points.ply", "sketch.json", "sketch.obj"}) {
     const fs::path file = fs::path(folder) / name;
     if (fs::is_regular_file(file)) return file.string();
   }
-  throw InputError(folder, "parametric_edges.json, edge_points.ply, sketch.json or sketch.obj",
-                   "none of them");
+  return "";
+}
+
+// parametric_edges.json cuts arcs into cubics; the files beside it tell what belongs together.
+void read_strokes_beside(const fs::path& folder, Prediction* prediction) {
+  const fs::path sketch = folder / "sketch.json", points = folder / "edge_points.ply";
+  if (fs::is_regular_file(sketch)) {
+    Prediction whole = read_json(sketch.string());
+    prediction->strokes = std::move(whole.strokes);
+    prediction->facts = std::move(whole.facts);
+  } else if (fs::is_regular_file(points)) {
+    prediction->strokes = strokes_of(read_ply_points(points.string()));
+  }
 }
 
 }  // namespace
+
+bool has_prediction(const std::string& path) {
+  std::error_code none;
+  return fs::is_directory(path, none) ? !file_of(path).empty() : fs::exists(path, none);
+}
 
 Prediction read_prediction(const std::string& path) {
   std::error_code none;
   if (!fs::exists(path, none)) throw InputError(path, "predicted edges", "nothing there");
   const std::string file = fs::is_directory(path, none) ? file_of(path) : path;
+  if (file.empty()) {
+    throw InputError(path, "parametric_edges.json, edge_points.ply, sketch.json or sketch.obj",
+                     "none of them");
+  }
   const std::string extension = fs::path(file).extension().string();
   Prediction prediction;
   if (extension == ".json") {
     prediction = read_json(file);
-    const fs::path points = fs::path(path) / "edge_points.ply";
-    if (prediction.strokes.empty() && file != path && fs::is_regular_file(points)) {
-      prediction.strokes = strokes_of(read_ply_points(points.string()));
-    }
+    if (prediction.strokes.empty() && file != path) read_strokes_beside(path, &prediction);
   } else if (extension == ".ply") {
     prediction = read_points(file);
   } else if (extension == ".obj") {

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "eval/prediction.h"
 
 namespace sketchsplat {
 
@@ -11,6 +15,8 @@ namespace sketchsplat {
 struct TrueEdge {
   std::string type;
   Eigen::Matrix3Xd polyline;
+  std::string name = {};           ///< index in its file; "3+4" after the two were joined
+  std::vector<bool> visible = {};  ///< whether each point can be seen; empty if nobody knows
 };
 
 /// Joins edges of one type that continue each other where nothing else ends, because files cut a
@@ -18,16 +24,56 @@ struct TrueEdge {
 /// (lines) or 12 (other types, whose first and last chords are not their tangents).
 std::vector<TrueEdge> merge_smooth(std::vector<TrueEdge> edges);
 
-/// One-to-one agreement of strokes and edges.
+/// Points where ends meet, compared with those of the truth. Shares are per cent.
+struct Junctions {
+  int predicted = 0, truth = 0;
+  int matched = 0;  ///< pairs, one to one, nearest first, at most 0.005 apart
+  /// NaN if there are none in the truth (recall), or in neither (precision, f).
+  double precision = std::numeric_limits<double>::quiet_NaN();
+  double recall = std::numeric_limits<double>::quiet_NaN();
+  double f = std::numeric_limits<double>::quiet_NaN();
+  int truth_visible = 0;  ///< junctions of the truth that can be seen
+  double recall_visible = std::numeric_limits<double>::quiet_NaN();  ///< NaN if nobody knows
+};
+
+/// One-to-one agreement of strokes and edges. Shares are per cent, NaN where there is nothing to
+/// take a share of; lengths are fractions of the object's longest side.
 struct Structure {
   int strokes = 0, edges = 0;
-  int matched = 0;  ///< pairs
-  double f = 0;     ///< 2 matched / (strokes + edges), per cent
+  int matched = 0;                         ///< pairs
+  std::vector<std::pair<int, int>> pairs;  ///< stroke and edge, best first
+  double f = 0;                            ///< 2 matched / (strokes + edges)
+  double precision = 0;                    ///< matched / strokes
+  double recall = 0;                       ///< matched / edges
+  int right_type = 0;  ///< pairs whose stroke is of the edge's kind, see kind_of_edge()
+  double right_type_share = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no kinds, no pairs
+  double strokes_per_edge = 0;
+  Junctions junctions;
+  /// Share of the predicted length that runs beside another stroke, see eval/duplicates.h.
+  double duplicated = std::numeric_limits<double>::quiet_NaN();
+  double length = 0, true_length = 0;
+  double length_error = 0;  ///< (length - true_length) / true_length, per cent
+  /// Numbers that the curves are made of, see eval/parameters.h. NaN if kinds are not known.
+  double parameters = std::numeric_limits<double>::quiet_NaN();
+  double true_parameters = 0;
+  double parameters_per_true = std::numeric_limits<double>::quiet_NaN();
+  /// Edges of which at least half the length can be seen, and how many of these have a partner.
+  /// The F is of this recall and the precision above. NaN if nobody knows.
+  int visible_edges = 0, visible_matched = 0;
+  double recall_visible = std::numeric_limits<double>::quiet_NaN();
+  double f_visible = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A stroke (samples, 3 x N) may be paired with an edge if at least 85 % of it lie within 0.005 of
-/// the edge and 85 % of the edge within 0.005 of it; the best pairs are taken first.
+/// the edge and 85 % of the edge within 0.005 of it; the best pairs are taken first. Fills counts,
+/// shares and what is visible, nothing else.
 Structure match_strokes(const std::vector<Eigen::Matrix3Xd>& strokes,
                         const std::vector<TrueEdge>& edges);
+
+/// All of it. `facts`: as many as strokes, or none. Strokes are joined as the edges are before
+/// their junctions are looked for, so that a smooth chain of cubics has none within.
+Structure compare_structure(const std::vector<Eigen::Matrix3Xd>& strokes,
+                            const std::vector<StrokeFacts>& facts,
+                            const std::vector<TrueEdge>& edges);
 
 }  // namespace sketchsplat

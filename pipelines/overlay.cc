@@ -116,20 +116,28 @@ std::vector<int> spread_views(const std::vector<View>& views, const Eigen::Vecto
   return chosen;
 }
 
-Picture draw_overlay(const Sketch& sketch, const View& view, const Picture& picture, int longest) {
+Picture draw_overlay(const std::vector<PaintedLine>& lines, const View& view,
+                     const Picture& picture, int longest) {
   const int size = std::max({view.camera.width, view.camera.height, 1});
   const Pen pen = {&view, std::min(1.0, double(longest) / size)};
   cv::Mat canvas = canvas_of(picture, view.camera, pen.scale);
+  for (const PaintedLine& line : lines) {
+    const auto& c = line.color;
+    cv::polylines(canvas, project_runs(line.points, pen), false, cv::Scalar(c[0], c[1], c[2]) * 255,
+                  line.width, cv::LINE_AA, kSubPixelBits);
+  }
+  return picture_of(canvas);
+}
+
+Picture draw_overlay(const Sketch& sketch, const View& view, const Picture& picture, int longest) {
+  std::vector<PaintedLine> lines;
   for (int s = 0; s < sketch.size(); ++s) {
     const double length = stroke_length(sketch, s);
     if (!(length > 0)) continue;
     // Lines too are sampled: a part of them may lie behind the camera.
-    const auto runs = project_runs(sample_stroke(sketch, s, length / 96), pen);
-    const auto c = kind_color(sketch.strokes[s].kind);
-    cv::polylines(canvas, runs, false, cv::Scalar(c[0], c[1], c[2]) * 255, 2, cv::LINE_AA,
-                  kSubPixelBits);
+    lines.push_back({sample_stroke(sketch, s, length / 96), kind_color(sketch.strokes[s].kind)});
   }
-  return picture_of(canvas);
+  return draw_overlay(lines, view, picture, longest);
 }
 
 }  // namespace sketchsplat

@@ -24,4 +24,14 @@ std::vector<int> spread_views(const std::vector<View>& views, const Eigen::Vecto
 Picture draw_overlay(const Sketch& sketch, const View& view, const Picture& picture,
                      int longest = 1200);
 
+struct PaintedLine {
+  Eigen::Matrix3Xd points;     ///< 3 x N in order, world units
+  std::array<float, 3> color;  ///< red, green, blue in [0, 1]
+  int width = 2;               ///< px of the overlay
+};
+
+/// The same of any polylines, the last on top.
+Picture draw_overlay(const std::vector<PaintedLine>& lines, const View& view,
+                     const Picture& picture, int longest = 1200);
+
 }  // namespace sketchsplat

@@ -163,5 +163,37 @@ TEST(AsFloat, RoundsToSinglePrecision) {
   EXPECT_EQ(as_float(points({{0.1, 0, 0}}))(0, 0), double(0.1f));
 }
 
+TEST(SpreadOf, InterpolatesBetweenRanks) {
+  Eigen::VectorXd five(5), four(4);
+  five << 4, 0, 3, 1, 2;
+  four << 3, 0, 1, 2;
+  EXPECT_EQ(spread_of(five).median, 2);
+  EXPECT_NEAR(spread_of(five).p95, 3.8, 1e-12);
+  EXPECT_EQ(spread_of(five).worst, 4);
+  EXPECT_EQ(spread_of(four).median, 1.5);
+  EXPECT_NEAR(spread_of(four).p95, 2.85, 1e-12);
+  EXPECT_EQ(spread_of(Eigen::VectorXd::Constant(1, 7)).p95, 7);
+  EXPECT_TRUE(std::isnan(spread_of({}).worst));
+}
+
+// Truth at x = 0, 1, 2, 3; prediction at 0 and 1 exactly.
+TEST(Score, RecallOfWhatCanBeSeenIsOfThatAlone) {
+  Eigen::Matrix3Xd truth = Eigen::Matrix3Xd::Zero(3, 4);
+  truth.row(0) << 0, 1, 2, 3;
+  const Eigen::Matrix3Xd prediction = truth.leftCols(2);
+  const Score s = score(prediction, truth, {0.5}, {true, true, true, false});
+  EXPECT_EQ(s.visible_samples, 3);
+  EXPECT_EQ(s.levels[0].recall, 50);
+  EXPECT_NEAR(s.levels[0].recall_visible, 200 / 3.0, 1e-12);
+  EXPECT_NEAR(s.levels[0].f_visible, 80, 1e-4) << "precision stays 100";
+  EXPECT_EQ(s.completeness, 0.75);
+  EXPECT_NEAR(s.completeness_visible, 1 / 3.0, 1e-12);
+  EXPECT_EQ(s.to_prediction.worst, 2);
+  EXPECT_EQ(s.to_truth.worst, 0);
+  EXPECT_TRUE(std::isnan(score(prediction, truth, {0.5}).levels[0].recall_visible));
+  const Score blind = score(prediction, truth, {0.5}, {false, false, false, false});
+  EXPECT_TRUE(std::isnan(blind.levels[0].f_visible)) << "nothing to recall";
+}
+
 }  // namespace
 }  // namespace sketchsplat

@@ -58,6 +58,23 @@ TEST_F(Chain, FindsTheEdgesOfThePart) {
   EXPECT_GT(json_in("score.json")["F5"], 95) << o.out;
 }
 
+TEST_F(Chain, EvaluationDrawsWhatIsMissed) {
+  const std::string wrong = in_folder("wrong.json");
+  std::ofstream(wrong) << R"({"lines_end_pts": [[0.3, 0.3, 0.3, 0.6, 0.7, 0.7]]})";
+  const std::string command = "evaluate --pred " + wrong + " --gt " + scene_;
+  EXPECT_EQ(run(command + " --overlays 2").status, kWrongUsage) << "where to?";
+  const Outcome o = run(command + " --overlays 2 --out " + in_folder("worst"));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, testing::HasSubstr("\nstroke line 0 (line): length 0.640, P5 "));
+  EXPECT_GE(json_in("worst/evaluation.json")["worst_edges"].size(), 5u);
+  EXPECT_EQ(count_lines(text_of_file(folder_ / "worst" / "evaluation.csv")), 3);
+  int pictures = 0;
+  for (const auto& file : fs::directory_iterator(folder_ / "worst")) {
+    pictures += file.path().extension() == ".png";
+  }
+  EXPECT_EQ(pictures, 2);
+}
+
 TEST_F(Chain, ReportRecordsEveryOptionAndWhatOverrodeThePreset) {
   ASSERT_EQ(run("reconstruct " + scene_ + " --rounds 2 --preset fast --out " + in_folder("result"))
                 .status,
