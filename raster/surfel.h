@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "datasets/image.h"
@@ -66,9 +67,10 @@ struct SurfelImages {
 /// Gradient of a scalar by every field of the cloud, and what density control asks for, summed over
 /// the pixels of one view. Column i is zero if surfel i is not drawn.
 struct SurfelGradient : SurfelCloud {
-  Eigen::Matrix2Xd in_image;     ///< 2 x N, by a shift of the footprint in the image [1/px]
-  Eigen::VectorXd in_image_abs;  ///< N, the same, but the norms of the pixels summed (Ye et al.,
-                                 ///< AbsGS, 2024): does not cancel where a surfel covers an edge
+  Eigen::Matrix2Xd in_image;  ///< 2 x N, by a shift of the footprint in the image [1/px]
+  /// 2 x N, the same, but the absolute values of the pixels summed (Ye et al., AbsGS, 2024): does
+  /// not cancel where a surfel covers an edge.
+  Eigen::Matrix2Xd in_image_abs;
   /// 3 x N (uu, uv, vv): splitting matrix S = sum_pixels dL/dg Hess g of the kernel g by (u, v),
   /// thus by positions in the plane in standard deviations (Wang et al., Steepest Descent Density
   /// Control, CVPR 2025). Only if its smallest eigenvalue is negative a split lowers the loss: to
