@@ -11,6 +11,8 @@
 namespace sketchsplat {
 namespace {
 
+constexpr int kParallelTiles = 64;  // fewer are done before a second thread has woken up
+
 // Copies the rows of a tile that are in the image, from it or into it.
 void load(const Image<float>& image, const SurfelTile& tile, Lanes* rows) {
   if (image.empty()) return;
@@ -148,7 +150,7 @@ const SurfelImages& SurfelRenderer::forward(const SurfelCloud& cloud, const View
   const SurfelLoop loop(s.options);
   const int tiles = int(s.bins.tiles.size());
   s.sums.resize(tiles);
-#pragma omp parallel for schedule(dynamic, 8)
+#pragma omp parallel for schedule(dynamic, 8) if (tiles >= kParallelTiles)
   for (int t = 0; t < tiles; ++t) {
     composite_tile(loop, s.bins.tiles[t], s.bins.entries.data(), s.footprints.data(), &s.sums[t]);
     store_images(s.sums[t], s.bins.tiles[t], &s.images);
@@ -163,14 +165,14 @@ void SurfelRenderer::backward(const SurfelCloud& cloud, const View& view,
   const SurfelLoop loop(s.options);
   const int tiles = int(s.bins.tiles.size()), footprints = int(s.footprints.size());
   s.entries.resize(s.bins.entries.size());
-#pragma omp parallel for schedule(dynamic, 8)
+#pragma omp parallel for schedule(dynamic, 8) if (tiles >= kParallelTiles)
   for (int t = 0; t < tiles; ++t) {
     const SurfelTile& tile = s.bins.tiles[t];
     composite_tile_backward(loop, tile, s.bins.entries.data(), s.footprints.data(), s.sums[t],
                             load_gradient(by_images, tile), &s.entries[tile.begin]);
   }
   *gradient = SurfelGradient::zero(s.count);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (tiles >= kParallelTiles)
   for (int f = 0; f < footprints; ++f) {
     project_surfel_backward(cloud, view, s.options, s.footprints[f], gather(s.bins, f, s.entries),
                             gradient);

@@ -61,7 +61,6 @@ SurfelBins bin_surfels(const std::vector<SurfelFootprint>& footprints, const Cam
   const int tiles_x = (camera.width + kSide - 1) / kSide;
   const int tiles_y = (camera.height + kSide - 1) / kSide;
   std::vector<std::uint64_t> bits(size_t(tiles_x) * tiles_y);
-#pragma omp parallel for schedule(static)
   for (int ty = 0; ty < tiles_y; ++ty) {
     for (int tx = 0; tx < tiles_x; ++tx) {
       bits[size_t(ty) * tiles_x + tx] = mask_bits(mask, camera, tx, ty);

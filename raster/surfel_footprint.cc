@@ -180,7 +180,7 @@ std::vector<SurfelFootprint> project_surfels(const SurfelCloud& cloud, const Vie
   std::vector<SurfelFootprint> all(count);
   std::vector<double> depths(count);
   std::vector<char> drawn(count);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count >= 500)
   for (int i = 0; i < count; ++i) {
     drawn[i] = project(cloud, i, view, options, profile, &all[i]);
     depths[i] = view.cam_from_world.rotation.row(2).dot(cloud.center.col(i));

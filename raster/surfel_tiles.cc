@@ -16,7 +16,7 @@ SKETCHSPLAT_INLINE bool any(const IntLanes& mask) {
   return ((parts[0] | parts[1]) | (parts[2] | parts[3])) != 0;
 }
 
-// 2 Phi(s) and phi(s): Abramowitz and Stegun 26.2.17, whose error is below 7.5e-8.
+// 2 Phi(s) and phi(s): Abramowitz and Stegun 26.2.17; its error, 7.5e-8 in Phi, is that of floats.
 SKETCHSPLAT_INLINE void normal_cdf(const Lanes& s, Lanes* twice, Lanes* density) {
   const Lanes size = s < 0 ? -s : s;
   const Lanes clamped = size < 13.0f ? size : Lanes{} + 13.0f;  // 2^-122: floats end there

@@ -99,7 +99,7 @@ void composite_tile_backward(const SurfelLoop& loop, const SurfelTile& tile, con
 void tile_weights(const SurfelLoop& loop, const SurfelTile& tile, const int* entries,
                   const SurfelFootprint* footprints, float* weights);
 
-/// 2 Phi(s) for |s| <= 13, absolute error below 3e-7, and exactly 1 at 0; `density`: phi(s).
+/// 2 Phi(s) for |s| <= 13, absolute error below 6e-7, and exactly 1 at 0; `density`: phi(s).
 void twice_normal_cdf(const float* s, int count, float* value, float* density);
 
 }  // namespace sketchsplat
