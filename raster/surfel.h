@@ -88,9 +88,11 @@ struct SurfelInfluence {
   std::vector<float> weight;  ///< > 0
 };
 
-/// Renders one cloud after another and keeps what backward needs. All threads of OpenMP (one, when
-/// called from a parallel region); the same bytes for any number of them. Float inside the images,
-/// double in the surfels. Not for use by two threads at once.
+/// Renders one cloud after another and keeps what backward needs. All threads of OpenMP for
+/// pictures that are worth it, one when called from a parallel region; the same bytes for any
+/// number of them. Where several views are at hand, a renderer for each and a parallel loop over
+/// them is faster. Float inside the images, double in the surfels. Not for use by two threads at
+/// once.
 class SurfelRenderer {
  public:
   explicit SurfelRenderer(const SurfelOptions& options);
