@@ -99,6 +99,7 @@ bool write_exr(const char* path, const FloatPlanes& planes, bool half, std::stri
                        half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
   spec.channelnames = planes.names;
   spec.attribute("compression", "zip:2");  // fast rather than small
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // same values, same bytes
   output->threads(1);
   std::vector<float> interleaved(pixels * channels);
   for (size_t c = 0; c < channels; ++c)

@@ -5,6 +5,8 @@
 #include <iostream>
 #include <memory>
 
+#include "datasets/errors.h"
+#include "datasets/synthetic/outputs.h"
 #include "datasets/synthetic/parts.h"
 #include "datasets/synthetic/plugin.h"
 #include "pipelines/atomic_file.h"
@@ -40,6 +42,11 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
   options.seed = std::uint64_t(common.seed);
   if (options.rig.focal > 0 && options.rig.object_size > 0)
     throw UsageError("--object-size sets the focal length: leave --focal out");
+  try {
+    parse_outputs(options.outputs);
+  } catch (const InputError& e) {
+    throw UsageError(std::string("--") + e.what());
+  }
   const SynthesisPlugin& plugin = load_plugin();
   const std::unique_ptr<SyntheticScene, void (*)(SyntheticScene*)> made(
       plugin.synthesize(arguments.options), plugin.release);

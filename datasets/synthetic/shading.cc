@@ -34,7 +34,7 @@ const Lamp kStrongLamp = {{-2.4f, -2.8f, 3.4f}, 0.85f};
 constexpr float kStrongRadius = 0.06f, kDimmed = 0.35f;
 
 // Glossy style: a varnish over grey.
-constexpr float kGlossyAlbedo = 0.5f, kMirror = 0.06f, kRoughness = 0.18f;
+constexpr float kGlossyAlbedo = 0.42f, kMirror = 0.12f, kRoughness = 0.18f;
 
 // Of a white surface that faces the lamp, at the squared distance `d2` from it.
 float falloff(const Lamp& lamp, float d2) { return lamp.power * lamp.position.squaredNorm() / d2; }

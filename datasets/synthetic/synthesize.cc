@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <sstream>
 
 #include "datasets/errors.h"
 #include "datasets/synthetic/mesh_part.h"
@@ -85,25 +84,6 @@ void scale(double factor, Image<float>* image) {
 }
 
 }  // namespace
-
-Outputs parse_outputs(const std::string& text) {
-  Outputs out;
-  if (text == "none") return out;
-  if (text == "all") return {true, true, true, true};
-  std::istringstream names(text + ",");
-  for (std::string name; std::getline(names, name, ',');) {
-    bool* flag = name == "mask"     ? &out.mask
-                 : name == "depth"  ? &out.depth
-                 : name == "normal" ? &out.normal
-                 : name == "edges"  ? &out.edges
-                                    : nullptr;
-    if (!flag)
-      throw InputError("outputs", "all, none or some of mask,depth,normal,edges",
-                       "\"" + name + "\"");
-    *flag = true;
-  }
-  return out;
-}
 
 SyntheticScene synthesize(const SynthesizeOptions& options) {
   check(options);

@@ -10,6 +10,7 @@
 #include "datasets/synthetic/brep.h"
 #include "datasets/synthetic/clutter.h"
 #include "datasets/synthetic/degrade.h"
+#include "datasets/synthetic/outputs.h"
 #include "datasets/synthetic/render.h"
 #include "datasets/synthetic/rig.h"
 #include "datasets/synthetic/tracer.h"
@@ -30,15 +31,6 @@ struct SynthesizeOptions {
   DegradeOptions degrade;
   std::string outputs = "all";  ///< what is written beside the images: see parse_outputs
 };
-
-/// What is written about each view beside its image.
-struct Outputs {
-  bool mask = false, depth = false, normal = false, edges = false;
-};
-
-/// From "all", "none" or names with commas between them: mask, depth, normal, edges. Throws
-/// InputError.
-Outputs parse_outputs(const std::string& text);
 
 /// A part, its true edges and its cameras. The object's box is centred at (0.5, 0.5, 0.5) extents.
 struct SyntheticScene {

@@ -46,6 +46,7 @@ class EdgeTracer {
   VisibleEdges take() { return std::move(edges_); }
 
  private:
+  static constexpr double kShortest = 0.25;  // [px]
   static constexpr int kMostPieces = 20000;  // an edge may pass beside the camera
 
   Spot spot(const Vector3d& point, const Vector3d& outward) const {
@@ -73,14 +74,30 @@ class EdgeTracer {
 
   void append(const Spot& s) {
     if (s.seen) {
+      if (is_needless_before(s.pixel)) run_.pop_back();
       if (run_.empty() || run_.back() != s.pixel) run_.push_back(s.pixel);
     } else {
       finish();
     }
   }
 
+  // The last point lies between the one before it and the next, which are near.
+  bool is_needless_before(const Vector2d& next) const {
+    if (run_.size() < 2) return false;
+    const Vector2d a = run_[run_.size() - 2], b = run_.back(), chord = next - a, to = b - a;
+    if (!(chord.norm() > 0) || chord.norm() > 0.9) return false;
+    return std::abs(chord.x() * to.y() - chord.y() * to.x()) < 0.01 * chord.norm();
+  }
+
+  double length() const {
+    double sum = 0;
+    for (size_t i = 1; i < run_.size(); ++i) sum += (run_[i] - run_[i - 1]).norm();
+    return sum;
+  }
+
+  // Rays that start above a corner see a little of the edges behind it: no piece of its own.
   void finish() {
-    if (run_.size() > 1) {
+    if (length() > kShortest) {
       Eigen::Matrix2Xd polyline(2, run_.size());
       for (size_t i = 0; i < run_.size(); ++i) polyline.col(i) = run_[i];
       edges_.polylines.push_back(std::move(polyline));

@@ -30,7 +30,8 @@ struct VisibleEdges {
   std::vector<int> curve;                   ///< one per polyline: of which true edge
 };
 
-/// Ends where something begins to hide an edge are found to about 0.05 px.
+/// Ends where something begins to hide an edge are found to about 0.05 px; pieces shorter than
+/// 0.25 px are left out.
 VisibleEdges visible_edges(const View& view, const Tracer& tracer,
                            const std::vector<TruthCurve>& curves, double lift);
 
