@@ -111,33 +111,46 @@ class Painter {
             hit.face};
   }
 
-  float light_of_clutter(const Vector3f& direction, const Hit& hit) const {
-    return subject_.clutter && hit.face >= 0
-               ? subject_.shader.clutter(surface_point(hit, direction), subject_.clutter->size)
-               : 0.0f;
-  }
-
-  Hit look_behind(const Vector3f& direction) const {
-    return subject_.clutter ? subject_.clutter->tracer.cast(origin_, direction) : Hit();
+  // What rays meet; those that pass the object, behind it.
+  struct Seen {
+    std::vector<Hit> hits;
+    std::vector<char> behind;  // the hit, if any, is one of the clutter
+  };
+  void look(const std::vector<Vector3f>& directions, Seen* seen) const {
+    const int n = int(directions.size());
+    seen->hits.resize(n);
+    seen->behind.assign(n, 0);
+    subject_.object.cast(origin_, directions.data(), n, seen->hits.data());
+    if (!subject_.clutter) return;
+    std::vector<Vector3f> passing;
+    for (int i = 0; i < n; ++i)
+      if (seen->hits[i].face < 0) passing.push_back(directions[i]);
+    std::vector<Hit> hits(passing.size());
+    subject_.clutter->tracer.cast(origin_, passing.data(), int(passing.size()), hits.data());
+    for (int i = 0, k = 0; i < n; ++i)
+      if (seen->hits[i].face < 0) {
+        seen->hits[i] = hits[k++];
+        seen->behind[i] = 1;
+      }
   }
 
   void look_along_row(int y) {
     const int n = rect_.x1 - rect_.x0;
     std::vector<Vector3f> directions(n);
-    std::vector<Hit> hits(n);
     for (int i = 0; i < n; ++i) directions[i] = direction(rect_.x0 + i, y);
-    subject_.object.cast(origin_, directions.data(), n, hits.data());
-    for (int i = 0; i < n; ++i) glimpses_.at(rect_.x0 + i, y) = glimpse(hits[i], directions[i]);
+    Seen seen;
+    look(directions, &seen);
+    for (int i = 0; i < n; ++i)
+      glimpses_.at(rect_.x0 + i, y) = glimpse(seen.hits[i], seen.behind[i], directions[i]);
   }
 
-  Glimpse glimpse(Hit hit, const Vector3f& direction) const {
+  Glimpse glimpse(const Hit& hit, bool behind, const Vector3f& direction) const {
     Glimpse g;
-    const bool behind = hit.face < 0;
-    if (behind) hit = look_behind(direction);
     if (hit.face < 0) return g;
     const SurfacePoint s = surface_point(hit, direction);
     g.face = behind ? -2 - hit.face : hit.face;
-    g.light = behind ? light_of_clutter(direction, hit) : subject_.shader.object(s, &g.mixed);
+    g.light = behind ? subject_.shader.clutter(s, subject_.clutter->size)
+                     : subject_.shader.object(s, &g.mixed);
     g.depth = hit.depth;
     g.point = s.point;
     g.normal = hit.normal;
@@ -233,37 +246,39 @@ class Painter {
   // one.
   void spread_fine_rays(int x, int y) {
     std::array<float, kRays> dx, dy;
-    std::array<Vector3f, kRays> directions;
-    std::array<Hit, kRays> hits;
+    std::vector<Vector3f> directions(kRays);
     for (int i = 0; i < kRays; ++i) {
       const std::uint64_t r = hash(seed_, index_, std::uint64_t(y) << 20 | x, 1000 + i);
       dx[i] = float((i % kGrid + uniform(r)) / kGrid - 0.5);
       dy[i] = float((i / kGrid + uniform(mix(r))) / kGrid - 0.5);
       directions[i] = direction(x + dx[i], y + dy[i]);
     }
-    subject_.object.cast(origin_, directions.data(), kRays, hits.data());
+    Seen seen;
+    look(directions, &seen);
     std::array<Sums, 9> sums;
     for (int i = 0; i < kRays; ++i) {
-      const bool behind = hits[i].face < 0;
-      const float light = behind ? light_of_clutter(directions[i], look_behind(directions[i]))
-                                 : light_of_object(hits[i], directions[i], x, y, i);
+      const bool covered = seen.hits[i].face >= 0 && !seen.behind[i];
+      const float light = light_of_ray(seen, i, directions[i], x, y);
       const float wx[3] = {pixel_filter(dx[i] + 1), pixel_filter(dx[i]), pixel_filter(dx[i] - 1)};
       const float wy[3] = {pixel_filter(dy[i] + 1), pixel_filter(dy[i]), pixel_filter(dy[i] - 1)};
       for (int k = 0; k < 9; ++k) {
         const float weight = wx[k % 3] * wy[k / 3];
         sums[k].light += weight * light;
-        sums[k].alpha += behind ? 0.0f : weight;
+        sums[k].alpha += covered ? weight : 0.0f;
         sums[k].weight += weight;
       }
     }
     add(x, y, sums);
   }
 
-  float light_of_object(const Hit& hit, const Vector3f& direction, int x, int y, int i) const {
+  float light_of_ray(const Seen& seen, int i, const Vector3f& direction, int x, int y) const {
+    if (seen.hits[i].face < 0) return 0;
+    const SurfacePoint s = surface_point(seen.hits[i], direction);
+    if (seen.behind[i]) return subject_.shader.clutter(s, subject_.clutter->size);
     // Every part of the pixel sees every part of the lamp: 7 is prime to 36.
     const std::uint64_t r = hash(seed_, index_, std::uint64_t(y) << 20 | x, 3000 + i);
     const float u = (float((i * 7) % kRays) + float(uniform(r))) / kRays;
-    return subject_.shader.object(surface_point(hit, direction), u, float(uniform(mix(r))));
+    return subject_.shader.object(s, u, float(uniform(mix(r))));
   }
 
   void add(int x, int y, const std::array<Sums, 9>& sums) {

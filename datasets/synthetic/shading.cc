@@ -138,12 +138,19 @@ float wood(const Vector3f& q) {
 
 }  // namespace
 
-float ink(const Vector3f& point, int face, std::uint64_t seed) {
-  const std::uint64_t bits = hash(seed, std::uint64_t(face), 0, 50);
-  const Vector3f q = rotation(mix(bits)) * point;
-  switch (bits % 3) {
+Print::Print(int faces, std::uint64_t seed) : patterns_(faces) {
+  for (int face = 0; face < faces; ++face) {
+    const std::uint64_t bits = hash(seed, std::uint64_t(face), 0, 50);
+    patterns_[face] = {bits, rotation(mix(bits))};
+  }
+}
+
+float Print::ink(const Vector3f& point, int face) const {
+  const Pattern& pattern = patterns_[face];
+  const Vector3f q = pattern.frame * point;
+  switch (pattern.bits % 3) {
     case 0:
-      return lines(q, bits);
+      return lines(q, pattern.bits);
     case 1:
       return checks(q);
     default:
@@ -151,13 +158,15 @@ float ink(const Vector3f& point, int face, std::uint64_t seed) {
   }
 }
 
-Shader::Shader(const Tracer& tracer, Style style, double texture_strength, std::uint64_t seed,
-               double lift)
+Shader::Shader(const Tracer& tracer, const Tracer* clutter, Style style, double texture_strength,
+               std::uint64_t seed, double lift)
     : tracer_(tracer),
       style_(style == Style::kTextured && texture_strength == 0 ? Style::kPlain : style),
       strength_(float(texture_strength)),
       seed_(seed),
-      lift_(float(lift)) {}
+      lift_(float(lift)),
+      print_(style_ == Style::kTextured ? tracer.num_faces() : 0, seed),
+      clutter_print_(clutter ? clutter->num_faces() : 0, mix(seed)) {}
 
 bool Shader::lamp_is_hidden(const SurfacePoint& s, float u, float v) const {
   const Vector3f to = (kStrongLamp.position - s.point).normalized();
@@ -176,7 +185,7 @@ float Shader::with_shadow(const SurfacePoint& s, float share) const {
 float Shader::object(const SurfacePoint& s, float u, float v) const {
   switch (style_) {
     case Style::kTextured:
-      return kAlbedo * matt(s.point, s.normal) * (1 - strength_ * ink(s.point, s.face, seed_));
+      return kAlbedo * matt(s.point, s.normal) * (1 - strength_ * print_.ink(s.point, s.face));
     case Style::kDark:
       return kDarkAlbedo * kDarkLight * matt(s.point, s.normal);
     case Style::kGlossy:
@@ -202,7 +211,7 @@ float Shader::clutter(const SurfacePoint& s, float size) const {
   const float albedo = 0.25f + 0.6f * float(uniform(bits));
   const Vector3f sun(0.48f, -0.36f, 0.8f);
   const float light = 0.3f + 0.5f * std::abs(s.normal.dot(sun));
-  const float print = uniform(mix(bits)) < 0.6 ? ink(s.point / size, s.face, mix(seed_)) : 0.0f;
+  const float print = uniform(mix(bits)) < 0.6 ? clutter_print_.ink(s.point / size, s.face) : 0.0f;
   return (style_ == Style::kDark ? kDarkLight : 1.0f) * albedo * light * (1 - print);
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "datasets/synthetic/tracer.h"
 
@@ -16,10 +17,22 @@ enum class Style {
   kShadowed,  ///< one strong small lamp whose shadows are cast
 };
 
-/// Share of the light that a pattern takes away at a point, in [0, 0.75]; borders are crisp. The
-/// pattern of a face is one of three: lines of several widths, checks, or the rings of wood; its
-/// kind and its direction depend on (seed, face) alone. Its smallest features are 0.012 wide.
-float ink(const Eigen::Vector3f& point, int face, std::uint64_t seed);
+/// What is printed on the faces of an object. The pattern of a face is one of three: lines of
+/// several widths, checks, or the rings of wood; its kind and its direction depend on (seed, face)
+/// alone. Its smallest features are 0.012 wide.
+class Print {
+ public:
+  Print(int faces, std::uint64_t seed);
+  /// Share of the light that is taken away at a point, in [0, 0.75]; borders are crisp.
+  float ink(const Eigen::Vector3f& point, int face) const;
+
+ private:
+  struct Pattern {
+    std::uint64_t bits;
+    Eigen::Matrix3f frame;
+  };
+  std::vector<Pattern> patterns_;  // one per face
+};
 
 /// A point of a surface, as somebody sees it; unit frame.
 struct SurfacePoint {
@@ -32,11 +45,12 @@ struct SurfacePoint {
 /// and a sky stand still in the unit frame.
 class Shader {
  public:
-  /// `tracer` (of the object, for cast shadows) must live longer. `lift`: how far rays of shadows
+  /// `tracer` (of the object, for cast shadows) must live longer. `clutter`: what stands behind it;
+  /// null: nothing. `lift`: how far rays of shadows
   /// start above the triangles, further than these stray from the surface. `texture_strength`: in
   /// [0, 1], of Style::kTextured.
-  Shader(const Tracer& tracer, Style style, double texture_strength, std::uint64_t seed,
-         double lift);
+  Shader(const Tracer& tracer, const Tracer* clutter, Style style, double texture_strength,
+         std::uint64_t seed, double lift);
 
   /// Light of the object. (u, v) in [0, 1): the point of the strong lamp that throws the shadow.
   float object(const SurfacePoint& s, float u, float v) const;
@@ -56,6 +70,8 @@ class Shader {
   float strength_;
   std::uint64_t seed_;
   float lift_;
+  Print print_;          // of the object
+  Print clutter_print_;  // empty if there is none
 };
 
 }  // namespace sketchsplat

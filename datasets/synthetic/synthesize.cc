@@ -111,7 +111,9 @@ SyntheticScene synthesize(const SynthesizeOptions& options) {
 RenderedView render_view(const SyntheticScene& scene, int view) {
   const RenderOptions& options = scene.options.render;
   const std::uint64_t seed = scene.options.seed;
-  const Shader shader(scene.tracer, options.style, options.texture_strength, seed, scene.lift);
+  const Tracer* behind = scene.clutter ? &scene.clutter->tracer : nullptr;
+  const Shader shader(scene.tracer, behind, options.style, options.texture_strength, seed,
+                      scene.lift);
   const Subject subject{scene.tracer, shader, scene.clutter.get(), scene.hints};
   Painting painting = paint(subject, scene.unit_views[view], seed, view);
   RenderedView out;

@@ -108,6 +108,11 @@ void Tracer::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f* directio
   }
 }
 
+int Tracer::num_faces() const {
+  const std::vector<int>& face = impl_->mesh.face;
+  return face.empty() ? 0 : 1 + *std::max_element(face.begin(), face.end());
+}
+
 bool Tracer::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

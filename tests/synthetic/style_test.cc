@@ -122,7 +122,7 @@ TEST(Glossy, LightOfAPlaceDependsOnTheEye) {
   s.point = Vector3f(0, 0, 0.5f);
   s.normal = s.facet_normal = Vector3f::UnitZ();
   for (Style style : {Style::kPlain, Style::kGlossy}) {
-    const Shader shader(scene.tracer, style, 1, 1, scene.lift);
+    const Shader shader(scene.tracer, nullptr, style, 1, 1, scene.lift);
     float low = 10, high = 0;
     for (int i = 0; i < 360; ++i) {
       const float a = float(i * M_PI / 180);
