@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Plug-in, loaded by image_io.cc when a file is no PNG: OpenImageIO brings some 260 shared objects
-// and 0.2 s of start-up, which a run over PNG images need not pay.
+// Plug-in, loaded by image_plugin.cc when a file is no PNG: OpenImageIO brings some 260 shared
+// objects and 0.2 s of start-up, which a run over PNG images need not pay.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -87,20 +88,128 @@ bool read_planes(const char* path, bool header_only, Planes* planes, std::string
   return true;
 }
 
-}  // namespace
-}  // namespace sketchsplat
+bool write_exr(const char* path, const FloatPlanes& planes, bool half, std::string* found) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("openexr");
+  if (!output) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  const size_t channels = planes.plane.size(), pixels = size_t(planes.width) * planes.height;
+  OIIO::ImageSpec spec(planes.width, planes.height, int(channels),
+                       half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+  spec.channelnames = planes.names;
+  spec.attribute("compression", "zip:2");  // fast rather than small
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // same values, same bytes
+  output->threads(1);
+  std::vector<float> interleaved(pixels * channels);
+  for (size_t c = 0; c < channels; ++c)
+    for (size_t i = 0; i < pixels; ++i) interleaved[i * channels + c] = planes.plane[c][i];
+  if (output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, interleaved.data()) &&
+      output->close())
+    return true;
+  *found = output->geterror();
+  return false;
+}
 
-extern "C" bool sketchsplat_read_planes(const char* path, bool header_only,
-                                        sketchsplat::Planes* planes, std::string* found) {
+bool read_exr(const char* path, FloatPlanes* planes, std::string* found) {
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+  if (!input) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  input->threads(1);
+  const OIIO::ImageSpec spec = input->spec();
+  const size_t channels = size_t(spec.nchannels), pixels = size_t(spec.width) * spec.height;
+  std::vector<float> interleaved(pixels * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data())) {
+    *found = input->geterror();
+    return false;
+  }
+  planes->width = spec.width;
+  planes->height = spec.height;
+  planes->names = spec.channelnames;
+  planes->plane.assign(channels, std::vector<float>(pixels));
+  for (size_t c = 0; c < channels; ++c)
+    for (size_t i = 0; i < pixels; ++i) planes->plane[c][i] = interleaved[i * channels + c];
+  return true;
+}
+
+bool encode_jpeg(const unsigned char* rows, int width, int height, int quality,
+                 std::vector<unsigned char>* bytes, std::string* found) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("jpeg");
+  if (!output || !output->supports("ioproxy")) {
+    *found = "OpenImageIO writes no JPEG to memory";
+    return false;
+  }
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("Compression", "jpeg:" + std::to_string(quality));
+  OIIO::Filesystem::IOVecOutput memory(*bytes);
+  output->threads(1);
+  if (output->set_ioproxy(&memory) && output->open("memory.jpg", spec) &&
+      output->write_image(OIIO::TypeDesc::UINT8, rows) && output->close())
+    return true;
+  *found = output->geterror();
+  return false;
+}
+
+bool decode_jpeg(const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
+                 std::string* found) {
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  const std::unique_ptr<OIIO::ImageInput> input =
+      OIIO::ImageInput::open("memory.jpg", nullptr, &memory);
+  if (!input) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  input->threads(1);
+  rows->resize(size_t(input->spec().width) * input->spec().height * 3);
+  if (input->spec().nchannels == 3 &&
+      input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rows->data()))
+    return true;
+  *found = input->geterror();
+  return false;
+}
+
+/// Calls a function of the above; nothing but a sentence leaves the plug-in.
+template <typename Function>
+bool guarded(std::string* found, Function function) {
   // The callers are the threads; OpenImageIO shall not start more.
   static const bool single = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
   (void)single;
   try {
-    if (sketchsplat::read_planes(path, header_only, planes, found)) return true;
+    if (function()) return true;
   } catch (const std::exception& e) {
     *found = e.what();
   }
   if (found->empty()) *found = "something that cannot be decoded";
   std::replace(found->begin(), found->end(), '\n', ' ');
   return false;
+}
+
+const ImagePlugin kPlugin = {
+    [](const char* path, bool header_only, Planes* planes, std::string* found) {
+      return guarded(found, [&] { return read_planes(path, header_only, planes, found); });
+    },
+    [](const char* path, const FloatPlanes& planes, bool half, std::string* found) {
+      return guarded(found, [&] { return write_exr(path, planes, half, found); });
+    },
+    [](const char* path, FloatPlanes* planes, std::string* found) {
+      return guarded(found, [&] { return read_exr(path, planes, found); });
+    },
+    [](const unsigned char* rows, int width, int height, int quality,
+       std::vector<unsigned char>* bytes, std::string* found) {
+      return guarded(found,
+                     [&] { return encode_jpeg(rows, width, height, quality, bytes, found); });
+    },
+    [](const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
+       std::string* found) {
+      return guarded(found, [&] { return decode_jpeg(bytes, rows, found); });
+    },
+};
+
+}  // namespace
+}  // namespace sketchsplat
+
+extern "C" const sketchsplat::ImagePlugin* sketchsplat_image_plugin() {
+  return &sketchsplat::kPlugin;
 }

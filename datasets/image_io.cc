@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/image_io.h"
 
-#include <dlfcn.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,12 +8,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <new>
 
 #include "datasets/errors.h"
-#include "datasets/image_planes.h"
+#include "datasets/image_plugin.h"
 #include "datasets/png_codec.h"
 
 namespace sketchsplat {
@@ -51,21 +49,6 @@ bool is_png(FILE* file) {
 
 // -------------------------------------------------------------------------- everything else
 
-/// The plug-in with OpenImageIO: beside the executable, where it is installed, or where it was
-/// built.
-ReadPlanes* load_plugin() {
-  namespace fs = std::filesystem;
-  std::error_code none;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
-  for (const fs::path& folder :
-       {bin, bin / ".." / "lib" / "sketchsplat", fs::path(SKETCHSPLAT_PLUGIN_FOLDER)}) {
-    if (void* library = ::dlopen((folder / kImagePluginFile).c_str(), RTLD_NOW | RTLD_LOCAL)) {
-      return reinterpret_cast<ReadPlanes*>(::dlsym(library, kReadPlanesSymbol));
-    }
-  }
-  return nullptr;
-}
-
 /// Decoders of JPEG fill what is missing with grey and say nothing. After the last start of a scan
 /// (FF DA) there must be an end of image (FF D9); compressed data hold neither by chance.
 void check_jpeg_is_whole(const std::string& path, FILE* file, size_t size) {
@@ -79,13 +62,14 @@ void check_jpeg_is_whole(const std::string& path, FILE* file, size_t size) {
 }
 
 Planes read_by_plugin(const std::string& path, bool header_only) {
-  static ReadPlanes* const read = load_plugin();
-  if (!read) {
+  const ImagePlugin* plugin = image_plugin();
+  if (!plugin) {
     throw InputError(path, kExpected, std::string("no PNG, and no ") + kImagePluginFile);
   }
   Planes planes;
   std::string found;
-  if (!read(path.c_str(), header_only, &planes, &found)) throw InputError(path, kExpected, found);
+  if (!plugin->read(path.c_str(), header_only, &planes, &found))
+    throw InputError(path, kExpected, found);
   return planes;
 }
 

@@ -13,11 +13,30 @@ struct Planes {
   std::vector<float> plane[4];  ///< row-major, in [0, 1], alpha not premultiplied
 };
 
-/// What the plug-in image_formats exports under kReadPlanesSymbol: decodes a file of any format
-/// that OpenImageIO knows, or its header alone (then no plane is filled). Returns false and says in
-/// `found` why it cannot. Safe from many threads.
-using ReadPlanes = bool(const char* path, bool header_only, Planes* planes, std::string* found);
-inline constexpr char kReadPlanesSymbol[] = "sketchsplat_read_planes";
+/// Numbers per pixel that are no colours: depth, normals.
+struct FloatPlanes {
+  int width = 0, height = 0;
+  std::vector<std::string> names;         ///< of the channels
+  std::vector<std::vector<float>> plane;  ///< row-major, any value
+};
+
+/// What the plug-in image_formats does. All return false and say in `found` why they cannot. Safe
+/// from many threads.
+struct ImagePlugin {
+  /// Decodes a file of any format that OpenImageIO knows, or its header alone (then no plane is
+  /// filled).
+  bool (*read)(const char* path, bool header_only, Planes* planes, std::string* found);
+  /// OpenEXR, whatever the file is called; `half`: 16 bits per number, else 32.
+  bool (*write_exr)(const char* path, const FloatPlanes& planes, bool half, std::string* found);
+  bool (*read_exr)(const char* path, FloatPlanes* planes, std::string* found);
+  /// Bytes of a JPEG file from 8-bit rows of three interleaved channels; quality in [1, 100].
+  bool (*encode_jpeg)(const unsigned char* rows, int width, int height, int quality,
+                      std::vector<unsigned char>* bytes, std::string* found);
+  bool (*decode_jpeg)(const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
+                      std::string* found);
+};
+
+inline constexpr char kImagePluginSymbol[] = "sketchsplat_image_plugin";
 inline constexpr char kImagePluginFile[] = "sketchsplat_image_formats.so";
 
 }  // namespace sketchsplat

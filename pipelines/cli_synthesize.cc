@@ -5,6 +5,8 @@
 #include <iostream>
 #include <memory>
 
+#include "datasets/errors.h"
+#include "datasets/synthetic/outputs.h"
 #include "datasets/synthetic/parts.h"
 #include "datasets/synthetic/plugin.h"
 #include "pipelines/atomic_file.h"
@@ -36,7 +38,15 @@ const SynthesisPlugin& load_plugin() {
 
 void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
                     Progress* progress) {
-  arguments.options.seed = std::uint64_t(common.seed);
+  SynthesizeOptions& options = arguments.options;
+  options.seed = std::uint64_t(common.seed);
+  if (options.rig.focal > 0 && options.rig.object_size > 0)
+    throw UsageError("--object-size sets the focal length: leave --focal out");
+  try {
+    parse_outputs(options.outputs);
+  } catch (const InputError& e) {
+    throw UsageError(std::string("--") + e.what());
+  }
   const SynthesisPlugin& plugin = load_plugin();
   const std::unique_ptr<SyntheticScene, void (*)(SyntheticScene*)> made(
       plugin.synthesize(arguments.options), plugin.release);
@@ -57,21 +67,47 @@ std::string part_words() {
   return words;
 }
 
-void list_scene_fields(SynthesizeOptions* o, Fields* f) {
+void list_camera_fields(SynthesizeOptions* o, Fields* f) {
   f->group("Cameras");
-  f->choose("rig", &o->rig.kind, {"sphere", "upper", "ring"}, "Where the cameras stand");
+  f->choose("rig", &o->rig.kind, {"sphere", "upper", "ring", "random", "one-sided"},
+            "Where the cameras stand");
   f->add("views", &o->rig.views, "cameras", 1, 100000, "Number of pictures");
   f->add("resolution", &o->rig.resolution, "px", 16, 8192, "Width and height of the pictures");
   f->add("focal", &o->rig.focal, "px", 0, 1e6, "Focal length; 0 is that of ABC-NEF");
+  f->add("object-size", &o->rig.object_size, "image widths", 0, 10,
+         "Of the longest side at --distance, instead of --focal; 0 leaves it to that");
   f->add("distance", &o->rig.distance, "extents", 1.6, 1000, "Of the cameras from the origin");
   f->add("elevation", &o->rig.elevation_deg, "deg", -85, 85, "Of the cameras of a ring");
+  f->add("spread", &o->rig.spread_deg, "deg", 1, 180, "Half-angle of the cone of a one-sided rig");
+}
+
+void list_picture_fields(SynthesizeOptions* o, Fields* f) {
+  RenderOptions& r = o->render;
   f->group("Pictures");
-  f->add("noise", &o->render.noise, "grey levels", 0, 100, "Standard deviation of the noise");
-  f->add("blur", &o->render.blur, "px", 0, 20, "Standard deviation of the blur");
-  f->add("exposure", &o->render.exposure, "stops", 0, 2, "Standard deviation of the exposure");
-  f->add("transparent", &o->render.transparent, "Leave the background out (alpha)");
-  f->add("background", &o->render.background, "", 0, 1,
-         "Grey of the background if it is not left out");
+  f->choose("style", &r.style, {"plain", "textured", "dark", "glossy", "shadowed"},
+            "Surface and light of the object");
+  f->add("texture-strength", &r.texture_strength, "", 0, 1, "Contrast of what textured prints");
+  f->add("noise", &r.noise, "grey levels", 0, 100, "Standard deviation of the noise");
+  f->add("blur", &r.blur, "px", 0, 20, "Standard deviation of the blur");
+  f->add("exposure", &r.exposure, "stops", 0, 2, "Standard deviation of the exposure");
+  f->add("jpeg", &r.jpeg, "quality", 0, 100,
+         "Compress and decode the pictures before they are written; 0 does not");
+  f->add("clutter", &r.clutter, "Put a room full of things behind the object; no alpha then");
+  f->add("transparent", &r.transparent, "Leave the background out (alpha)");
+  f->add("background", &r.background, "", 0, 1, "Grey of the background if it is not left out");
+  f->add("outputs", &o->outputs, "NAMES",
+         "Beside the pictures: all, none or some of mask,depth,normal,edges");
+  f->group("Damage");
+  DegradeOptions& d = o->degrade;
+  f->add("pose-noise", &d.pose_noise_px, "px", 0, 100,
+         "Mean shift of the object's points by errors of the poses as stated");
+  f->add("focal-error", &d.focal_error_percent, "%", -50, 50,
+         "How much the focal length as stated is too large");
+  f->add("missing", &d.missing, "share", 0, 1, "Of the frames have no image file");
+  f->add("truncated", &d.truncated, "share", 0, 1, "Of the frames have half an image file");
+}
+
+void list_object_fields(SynthesizeOptions* o, Fields* f) {
   f->group("Object");
   f->add("extent", &o->extent, "world units", 1e-9, 1e9, "Longest side of the object");
   f->add("smooth-angle", &o->smooth_angle_deg, "deg", 0.01, 89,
@@ -90,13 +126,17 @@ Verb synthesize_verb() {
   Field& out = f.add("out", &arguments->out, "SCENE", "The scene folder to write");
   out.required = true;
   out.short_name = "o";
-  list_scene_fields(&arguments->options, &f);
+  list_camera_fields(&arguments->options, &f);
+  list_picture_fields(&arguments->options, &f);
+  list_object_fields(&arguments->options, &f);
   Verb verb;
   verb.name = "synthesize";
   verb.summary = "Render a part with exact ground truth as a scene";
-  verb.examples = {"sketchsplat synthesize --out scenes/part",
-                   "sketchsplat synthesize bracket.step --out scenes/bracket --views 30 --noise 3",
-                   "sketchsplat synthesize bracket.stl --out scenes/bracket --crease-angle 40"};
+  verb.examples = {
+      "sketchsplat synthesize --out scenes/part",
+      "sketchsplat synthesize bracket.step --out scenes/bracket --views 30 --noise 3",
+      "sketchsplat synthesize bracket.stl --out scenes/bracket --crease-angle 40",
+      "sketchsplat synthesize flange --out scenes/hard --style glossy --clutter --jpeg 80"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {
     run_synthesize(*arguments, common, progress);

@@ -1,31 +1,30 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
-#include <vector>
 
 #include "datasets/image.h"
-#include "datasets/synthetic/tracer.h"
-#include "datasets/view.h"
+#include "datasets/synthetic/painter.h"
 
 namespace sketchsplat {
 
 struct RenderOptions {
+  Style style = Style::kPlain;
+  double texture_strength = 1;  ///< contrast of the patterns of Style::kTextured, [0, 1]
+  bool clutter = false;         ///< things far behind the object; the picture is opaque then
   double noise = 0;  ///< standard deviation of the noise [grey levels], [0, 100]; where alpha > 0
   double blur = 0;   ///< Gaussian blur [px], [0, 20]
-  double exposure = 0;      ///< standard deviation of the exposure of views [stops], [0, 2]
+  double exposure = 0;  ///< standard deviation of the exposure of views [stops], [0, 2]
+  int jpeg = 0;  ///< quality of a compression that the picture went through, [0, 100]; 0: none
   bool transparent = true;  ///< alpha is the coverage; else the picture is opaque
   double background = 1.0;  ///< grey of an opaque background, [0, 1]
 };
 
-/// A picture of the mesh behind `tracer`: grey object under five lamps and a sky that stand still
-/// in the unit frame; linear light, filtered as Blender does (Blackman-Harris over 3 px), then
-/// sRGB; colour not premultiplied. Six by six rays per pixel where something changes, one
-/// elsewhere. `view` is in the unit frame. `hints`: 3 x N points along edges of the object, at most
-/// a pixel or two apart, where features thinner than a pixel may hide from the one ray. Noise is
-/// the same for the three colours; it depends on (seed, index, pixel) alone.
-Picture render(const Tracer& tracer, const View& view, const Eigen::Matrix3Xd& hints,
-               const RenderOptions& options, std::uint64_t seed, int index);
+/// What a camera makes of a painting: blur, exposure, sRGB, noise, compression. Colour is not
+/// premultiplied. Noise is the same for the three colours; it depends on (seed, index, pixel)
+/// alone, and a larger one is the same noise, scaled. Compression sees a transparent picture over
+/// its background; alpha stays as it is.
+Picture expose(const Painting& painting, const RenderOptions& options, std::uint64_t seed,
+               int index);
 
 }  // namespace sketchsplat

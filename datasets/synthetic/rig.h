@@ -10,9 +10,11 @@
 namespace sketchsplat {
 
 enum class RigKind {
-  kSphere,  ///< all around, Fibonacci lattice
-  kUpper,   ///< above the horizon, Fibonacci lattice
-  kRing,    ///< one circle, evenly spaced
+  kSphere,    ///< all around, Fibonacci lattice
+  kUpper,     ///< above the horizon, Fibonacci lattice
+  kRing,      ///< one circle, evenly spaced
+  kRandom,    ///< all around, every direction drawn for itself
+  kOneSided,  ///< a cone of directions about one that looks down by 35 degrees
 };
 
 struct RigOptions {
@@ -20,8 +22,11 @@ struct RigOptions {
   int views = 50;             ///< [1, 100000]
   int resolution = 800;       ///< width and height [px], [16, 8192]
   double focal = 0;           ///< [px]; 0 means 1111.1113654242622 at 800 px, in proportion
+  double object_size = 0;     ///< longest side at `distance`, in widths of the image, [0, 10]; sets
+                              ///< the focal length in place of `focal`; 0: does not
   double distance = 4.0;      ///< of the cameras from the world origin, extents, [1.6, 1000]
   double elevation_deg = 30;  ///< of a ring, [-85, 85]
+  double spread_deg = 45;     ///< half-angle of the cone of a one-sided rig, [1, 180]
 };
 
 /// Cameras that look at the origin of the unit frame (centre of the object, whose longest side is

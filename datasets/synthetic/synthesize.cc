@@ -7,6 +7,7 @@
 #include "datasets/errors.h"
 #include "datasets/synthetic/mesh_part.h"
 #include "datasets/synthetic/parts.h"
+#include "datasets/synthetic/visibility.h"
 
 namespace sketchsplat {
 namespace {
@@ -29,36 +30,25 @@ void check(const SynthesizeOptions& o) {
   require("focal length", o.rig.focal, 0, 1e6);
   require("distance", o.rig.distance, 1.6, 1000);
   require("elevation", o.rig.elevation_deg, -85, 85);
+  require("object size", o.rig.object_size, 0, 10);
+  require("spread", o.rig.spread_deg, 1, 180);
+  require("texture strength", o.render.texture_strength, 0, 1);
+  require("JPEG quality", o.render.jpeg, 0, 100);
   require("noise", o.render.noise, 0, 100);
   require("blur", o.render.blur, 0, 20);
   require("exposure", o.render.exposure, 0, 2);
   require("background", o.render.background, 0, 1);
+  require("pose noise", o.degrade.pose_noise_px, 0, 100);
+  require("focal error", o.degrade.focal_error_percent, -50, 50);
+  require("missing", o.degrade.missing, 0, 1);
+  require("truncated", o.degrade.truncated, 0, 1);
+  parse_outputs(o.outputs);
 }
 
 bool is_step_file(const std::string& part) {
   std::string ending = part.substr(std::min(part.size(), part.rfind('.')));
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   return ending == ".step" || ending == ".stp";
-}
-
-// How many views see each point of an edge: rays start a little way into the free space between the
-// faces, further than triangles stray from the surface.
-void count_views(const Tracer& tracer, const std::vector<View>& views, double lift,
-                 TruthCurve* curve) {
-  curve->visible_views.assign(curve->points.cols(), 0);
-  for (int i = 0; i < curve->points.cols(); ++i) {
-    const Vector3d from = curve->points.col(i) + lift * curve->outward.col(i);
-    for (const View& view : views) {
-      double depth;
-      const Eigen::Vector2d pixel = view.project(curve->points.col(i), &depth);
-      if (!(depth > 0) || !view.camera.contains(pixel)) continue;
-      const Vector3d eye = view.center_in_world();
-      // An edge without a free side starts on its way to the eye instead.
-      const Vector3d start =
-          curve->outward.col(i).isZero() ? from + lift * (eye - from).normalized() : from;
-      if (!tracer.blocked(start.cast<float>(), eye.cast<float>())) ++curve->visible_views[i];
-    }
-  }
 }
 
 MeshPart make_object(const SynthesizeOptions& options) {
@@ -83,6 +73,16 @@ Eigen::Matrix3Xd all_points(const Truth& truth) {
   return points;
 }
 
+std::shared_ptr<const Clutter> clutter_behind(const std::vector<View>& views, std::uint64_t seed) {
+  double reach = 1;
+  for (const View& view : views) reach = std::max(reach, view.center_in_world().norm());
+  return std::make_shared<const Clutter>(make_clutter(reach, seed));
+}
+
+void scale(double factor, Image<float>* image) {
+  for (float& value : image->data) value = float(value * factor);
+}
+
 }  // namespace
 
 SyntheticScene synthesize(const SynthesizeOptions& options) {
@@ -101,13 +101,32 @@ SyntheticScene synthesize(const SynthesizeOptions& options) {
           transformed(truth, options.extent, shift),
           transformed(unit_views, options.extent, shift),
           unit_views,
+          curves,
           all_points(truth),
-          tracer};
+          tracer,
+          options.render.clutter ? clutter_behind(unit_views, options.seed) : nullptr,
+          lift};
 }
 
-Picture render(const SyntheticScene& scene, int view) {
-  return render(scene.tracer, scene.unit_views[view], scene.hints, scene.options.render,
-                scene.options.seed, view);
+RenderedView render_view(const SyntheticScene& scene, int view) {
+  const RenderOptions& options = scene.options.render;
+  const std::uint64_t seed = scene.options.seed;
+  const Tracer* behind = scene.clutter ? &scene.clutter->tracer : nullptr;
+  const Shader shader(scene.tracer, behind, options.style, options.texture_strength, seed,
+                      scene.lift);
+  const Subject subject{scene.tracer, shader, scene.clutter.get(), scene.hints};
+  Painting painting = paint(subject, scene.unit_views[view], seed, view);
+  RenderedView out;
+  out.picture = expose(painting, options, seed, view);
+  out.mask = std::move(painting.alpha);
+  out.depth = std::move(painting.depth);
+  scale(scene.options.extent, &out.depth);
+  out.normal_x = std::move(painting.normal_x);
+  out.normal_y = std::move(painting.normal_y);
+  out.normal_z = std::move(painting.normal_z);
+  return out;
 }
+
+Picture render(const SyntheticScene& scene, int view) { return render_view(scene, view).picture; }
 
 }  // namespace sketchsplat

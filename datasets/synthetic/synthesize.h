@@ -2,11 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "datasets/image.h"
 #include "datasets/synthetic/brep.h"
+#include "datasets/synthetic/clutter.h"
+#include "datasets/synthetic/degrade.h"
+#include "datasets/synthetic/outputs.h"
 #include "datasets/synthetic/render.h"
 #include "datasets/synthetic/rig.h"
 #include "datasets/synthetic/tracer.h"
@@ -24,30 +28,51 @@ struct SynthesizeOptions {
   double deflection = 2e-5;  ///< of the triangles that are rendered [extents], [1e-6, 1e-2]
   RigOptions rig;
   RenderOptions render;
+  DegradeOptions degrade;
+  std::string outputs = "all";  ///< what is written beside the images: see parse_outputs
 };
 
 /// A part, its true edges and its cameras. The object's box is centred at (0.5, 0.5, 0.5) extents.
 struct SyntheticScene {
   SynthesizeOptions options;
-  Truth truth;                   ///< world units
-  std::vector<View> views;       ///< world units
-  std::vector<View> unit_views;  ///< the same in the unit frame, where rendering happens
-  Eigen::Matrix3Xd hints;        ///< 3 x N  points along all edges, unit frame
-  Tracer tracer;                 ///< the mesh, unit frame
+  Truth truth;                             ///< world units
+  std::vector<View> views;                 ///< world units
+  std::vector<View> unit_views;            ///< the same in the unit frame, where rendering happens
+  std::vector<TruthCurve> unit_curves;     ///< truth.curves in the unit frame
+  Eigen::Matrix3Xd hints;                  ///< 3 x N  points along all edges, unit frame
+  Tracer tracer;                           ///< the mesh, unit frame
+  std::shared_ptr<const Clutter> clutter;  ///< what stands behind it; null if nothing
+  double lift = 0;  ///< how far rays that leave the surface start above it, unit lengths
 };
 
 /// Throws InputError if there is no such part or file, if it holds no sharp edge, or if an option
 /// lies outside its range.
 SyntheticScene synthesize(const SynthesizeOptions& options);
 
-/// The picture of one view; any number of threads may ask at once.
-Picture render(const SyntheticScene& scene, int view);
+/// One view, its image and what is known about its pixels.
+struct RenderedView {
+  Picture picture;
+  Image<float> mask;  ///< coverage by the object, in [0, 1], neither blurred nor noisy
+  Image<float>
+      depth;  ///< z in the camera of what the pixel's middle sees [world units]; 0: nothing
+  /// Unit normal of the surface there, towards the camera, in its axes (x right, y down, z
+  /// forward); zero where there is nothing.
+  Image<float> normal_x, normal_y, normal_z;
+};
+
+/// Any number of threads may ask at once.
+RenderedView render_view(const SyntheticScene& scene, int view);
+Picture render(const SyntheticScene& scene, int view);  ///< its picture alone
 
 /// Writes a scene folder in the layout of ABC-NEF as EMAP ships it:
 ///   meta_data.json (last, so that a folder that has it is whole), color/<k>_colors.png,
 ///   groundtruth/gt.json: list of {"type", "closed", "points": [[x, y, z], ...],
 ///     "visible_views": [n, ...] one per point, "dihedral_deg"},
-///   groundtruth/sketch.json: the same edges as a sketch graph.
+///   groundtruth/sketch.json: the same edges as a sketch graph;
+/// and of the outputs that were asked for, whatever happens to the image:
+///   mask/<k>.png, depth/<k>.exr (channel Z, 32 bits), normal/<k>.exr (R, G, B = x, y, z, 16 bits),
+///   as RenderedView says, edges_visible/<k>.png and .json: as draw() and to_json() of the visible
+///   pieces of the true edges, whose "curve" counts the entries of gt.json.
 /// Views are rendered in parallel (OpenMP). Throws OutputError.
 void write_scene(const SyntheticScene& scene, const std::string& folder);
 

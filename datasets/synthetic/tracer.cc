@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -13,6 +14,8 @@ struct Tracer::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   SurfaceMesh mesh;
+  Hit hit_at(unsigned triangle, float depth, float u, float v, const Eigen::Vector3f& facet_normal,
+             const Eigen::Vector3f& direction) const;
   ~Impl() {
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
@@ -42,6 +45,23 @@ Tracer::Tracer(const SurfaceMesh& mesh) {
   impl_ = impl;
 }
 
+Hit Tracer::Impl::hit_at(unsigned triangle, float depth, float u, float v,
+                         const Eigen::Vector3f& facet_normal,
+                         const Eigen::Vector3f& direction) const {
+  const auto& corner = mesh.corners[triangle];
+  Hit hit;
+  hit.face = mesh.face[triangle];
+  hit.depth = depth;
+  hit.facet_normal = facet_normal.normalized();
+  if (hit.facet_normal.dot(direction) > 0) hit.facet_normal = -hit.facet_normal;
+  hit.normal = (mesh.normals[corner[0]] * (1 - u - v) + mesh.normals[corner[1]] * u +
+                mesh.normals[corner[2]] * v)
+                   .normalized();
+  // A sheet is lit on both sides, and so is a solid whose faces look inwards.
+  if (hit.normal.dot(hit.facet_normal) < 0) hit.normal = -hit.normal;
+  return hit;
+}
+
 Hit Tracer::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -52,21 +72,45 @@ Hit Tracer::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction
   query.ray.mask = ~0u;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(impl_->scene, &context, &query);
-  Hit hit;
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
-  const SurfaceMesh& mesh = impl_->mesh;
-  const auto& corner = mesh.corners[query.hit.primID];
-  const float u = query.hit.u, v = query.hit.v;
-  hit.face = mesh.face[query.hit.primID];
-  hit.depth = query.ray.tfar;
-  hit.facet_normal = Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized();
-  if (hit.facet_normal.dot(direction) > 0) hit.facet_normal = -hit.facet_normal;
-  hit.normal = (mesh.normals[corner[0]] * (1 - u - v) + mesh.normals[corner[1]] * u +
-                mesh.normals[corner[2]] * v)
-                   .normalized();
-  // A sheet is lit on both sides, and so is a solid whose faces look inwards.
-  if (hit.normal.dot(hit.facet_normal) < 0) hit.normal = -hit.normal;
-  return hit;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Hit();
+  return impl_->hit_at(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v,
+                       {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}, direction);
+}
+
+void Tracer::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f* directions, int n,
+                  Hit* hits) const {
+  constexpr int kPacket = 8;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  for (int first = 0; first < n; first += kPacket) {
+    alignas(32) int valid[kPacket];
+    alignas(32) RTCRayHit8 query{};
+    for (int i = 0; i < kPacket; ++i) {
+      valid[i] = first + i < n ? -1 : 0;
+      const Eigen::Vector3f& d = directions[std::min(first + i, n - 1)];
+      query.ray.org_x[i] = origin.x(), query.ray.org_y[i] = origin.y();
+      query.ray.org_z[i] = origin.z();
+      query.ray.dir_x[i] = d.x(), query.ray.dir_y[i] = d.y(), query.ray.dir_z[i] = d.z();
+      query.ray.tfar[i] = std::numeric_limits<float>::infinity();
+      query.ray.mask[i] = ~0u;
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid, impl_->scene, &context, &query);
+    for (int i = 0; i < kPacket && first + i < n; ++i) {
+      const auto& h = query.hit;
+      hits[first + i] =
+          h.geomID[i] == RTC_INVALID_GEOMETRY_ID
+              ? Hit()
+              : impl_->hit_at(h.primID[i], query.ray.tfar[i], h.u[i], h.v[i],
+                              {h.Ng_x[i], h.Ng_y[i], h.Ng_z[i]}, directions[first + i]);
+    }
+  }
+}
+
+int Tracer::num_faces() const {
+  const std::vector<int>& face = impl_->mesh.face;
+  return face.empty() ? 0 : 1 + *std::max_element(face.begin(), face.end());
 }
 
 bool Tracer::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {

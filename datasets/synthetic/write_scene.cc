@@ -4,10 +4,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "datasets/errors.h"
-#include "datasets/scene.h"
+#include "datasets/float_image_io.h"
+#include "datasets/image_io.h"
+#include "datasets/synthetic/degrade.h"
 #include "datasets/synthetic/synthesize.h"
+#include "datasets/synthetic/visibility.h"
 #include "sketches/io.h"
 
 namespace sketchsplat {
@@ -49,8 +53,11 @@ json frame_of_view(const View& view) {
 
 json meta_data(const SyntheticScene& scene) {
   const double e = scene.options.extent;
+  const Eigen::Matrix3Xd points = (scene.hints * e).array() + 0.5 * e;
   json frames = json::array();
-  for (const View& view : scene.views) frames.push_back(frame_of_view(view));
+  for (const View& view :
+       stated_views(scene.views, points, scene.options.degrade, scene.options.seed))
+    frames.push_back(frame_of_view(view));
   return {{"camera_model", "OPENCV"},
           {"height", scene.options.rig.resolution},
           {"width", scene.options.rig.resolution},
@@ -75,20 +82,61 @@ json ground_truth(const Truth& truth) {
   return out;
 }
 
+// The image, or what is left of it; of an earlier one with that name, nothing.
+void write_image(const std::string& path, const Picture& picture, Fate fate) {
+  std::error_code error;
+  if (fate == Fate::kMissing) {
+    fs::remove(path, error);
+  } else {
+    write_png(path, picture);
+    if (fate == Fate::kTruncated) fs::resize_file(path, fs::file_size(path) / 2, error);
+  }
+  if (error) throw OutputError(path, error.message());
+}
+
+void write_outputs(const SyntheticScene& scene, int k, const RenderedView& view,
+                   const std::string& folder, const Outputs& outputs) {
+  const auto file = [&](const char* subfolder, const char* ending) {
+    return folder + "/" + subfolder + "/" + std::to_string(k) + ending;
+  };
+  if (outputs.mask) write_png(file("mask", ".png"), view.mask);
+  if (outputs.depth) write_exr(file("depth", ".exr"), {{"Z", view.depth}}, /*half=*/false);
+  if (outputs.normal)
+    write_exr(file("normal", ".exr"),
+              {{"R", view.normal_x}, {"G", view.normal_y}, {"B", view.normal_z}}, /*half=*/true);
+  if (!outputs.edges) return;
+  const VisibleEdges edges =
+      visible_edges(scene.unit_views[k], scene.tracer, scene.unit_curves, scene.lift);
+  const Camera& camera = scene.unit_views[k].camera;
+  write_png(file("edges_visible", ".png"), draw(edges, camera.width, camera.height));
+  write_text(file("edges_visible", ".json"), to_json(edges));
+}
+
+void make_folders(const std::string& folder, const Outputs& outputs) {
+  const std::pair<const char*, bool> wanted[] = {
+      {"/color", true},          {"/groundtruth", true},      {"/mask", outputs.mask},
+      {"/depth", outputs.depth}, {"/normal", outputs.normal}, {"/edges_visible", outputs.edges}};
+  for (const auto& [name, is_wanted] : wanted) {
+    std::error_code error;
+    if (is_wanted) fs::create_directories(folder + name, error);
+    if (error) throw OutputError(folder + name, error.message());
+  }
+}
+
 }  // namespace
 
 void write_scene(const SyntheticScene& scene, const std::string& folder) {
-  std::error_code error;
-  for (const char* name : {"/color", "/groundtruth"}) {
-    fs::create_directories(folder + name, error);
-    if (error) throw OutputError(folder + name, error.message());
-  }
+  const Outputs outputs = parse_outputs(scene.options.outputs);
+  make_folders(folder, outputs);
   const int n = int(scene.views.size());
+  const std::vector<Fate> fate = fates(n, scene.options.degrade, scene.options.seed);
   std::vector<std::exception_ptr> failures(n);
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < n; ++k) {
     try {
-      write_png(folder + "/color/" + scene.views[k].name, render(scene, k));
+      const RenderedView view = render_view(scene, k);
+      write_image(folder + "/color/" + scene.views[k].name, view.picture, fate[k]);
+      write_outputs(scene, k, view, folder, outputs);
     } catch (...) {
       failures[k] = std::current_exception();
     }

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const char kScene[] = "synthesize box --views 12 --resolution 240 --quiet --out ";
+const char kScene[] = "synthesize box --views 12 --resolution 240 --outputs none --quiet --out ";
 
 class Bench : public Program {
  protected:

@@ -24,6 +24,7 @@ inline void write_part(const std::string& part, int views, int resolution, doubl
   options.rig.views = views;
   options.rig.resolution = resolution;
   options.render.noise = noise;
+  options.outputs = "none";
   write_scene(synthesize(options), folder);
 }
 

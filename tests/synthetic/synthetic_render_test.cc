@@ -24,6 +24,7 @@ SynthesizeOptions small(const std::string& part) {
   options.part = part;
   options.rig.views = 3;
   options.rig.resolution = 96;
+  options.outputs = "none";
   return options;
 }
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/image_plugin.h"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+
+namespace sketchsplat {
+namespace {
+
+const ImagePlugin* load_plugin() {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
+  for (const fs::path& folder :
+       {bin, bin / ".." / "lib" / "sketchsplat", fs::path(SKETCHSPLAT_PLUGIN_FOLDER)}) {
+    void* library = ::dlopen((folder / kImagePluginFile).c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) continue;
+    using Get = const ImagePlugin*();
+    return reinterpret_cast<Get*>(::dlsym(library, kImagePluginSymbol))();
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const ImagePlugin* image_plugin() {
+  static const ImagePlugin* const plugin = load_plugin();
+  return plugin;
+}
+
+}  // namespace sketchsplat

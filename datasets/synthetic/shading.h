@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "datasets/synthetic/tracer.h"
+
+namespace sketchsplat {
+
+enum class Style {
+  kPlain,     ///< matt grey, as in ABC-NEF
+  kTextured,  ///< prints, checks or grain on every face: edges that are no geometry
+  kDark,      ///< dark matt object under little light
+  kGlossy,    ///< highlights of the lamps, and the sky mirrored
+  kShadowed,  ///< one strong small lamp whose shadows are cast
+};
+
+/// What is printed on the faces of an object. The pattern of a face is one of three: lines of
+/// several widths, checks, or the rings of wood; its kind and its direction depend on (seed, face)
+/// alone. Its smallest features are 0.012 wide.
+class Print {
+ public:
+  Print(int faces, std::uint64_t seed);
+  /// Share of the light that is taken away at a point, in [0, 0.75]; borders are crisp.
+  float ink(const Eigen::Vector3f& point, int face) const;
+
+ private:
+  struct Pattern {
+    std::uint64_t bits;
+    Eigen::Matrix3f frame;
+  };
+  std::vector<Pattern> patterns_;  // one per face
+};
+
+/// A point of a surface, as somebody sees it; unit frame.
+struct SurfacePoint {
+  Eigen::Vector3f point, normal, facet_normal;  ///< normals unit, on the side of the eye
+  Eigen::Vector3f to_eye;                       ///< unit
+  int face = 0;
+};
+
+/// What light a surface sends to the eye: linear, grey, 1 is the white of the picture. Five lamps
+/// and a sky stand still in the unit frame.
+class Shader {
+ public:
+  /// `tracer` (of the object, for cast shadows) must live longer. `clutter`: what stands behind it;
+  /// null: nothing. `lift`: how far rays of shadows
+  /// start above the triangles, further than these stray from the surface. `texture_strength`: in
+  /// [0, 1], of Style::kTextured.
+  Shader(const Tracer& tracer, const Tracer* clutter, Style style, double texture_strength,
+         std::uint64_t seed, double lift);
+
+  /// Light of the object. (u, v) in [0, 1): the point of the strong lamp that throws the shadow.
+  float object(const SurfacePoint& s, float u, float v) const;
+  /// The same from the middle of the strong lamp; `mixed`: other points of it are hidden.
+  float object(const SurfacePoint& s, bool* mixed) const;
+  /// Light of what stands far behind the object, `size` times as large; no shadows.
+  float clutter(const SurfacePoint& s, float size) const;
+  /// Light may change within a face.
+  bool patterned() const { return style_ != Style::kPlain && style_ != Style::kDark; }
+
+ private:
+  float with_shadow(const SurfacePoint& s, float share) const;
+  bool lamp_is_hidden(const SurfacePoint& s, float u, float v) const;
+
+  const Tracer& tracer_;
+  Style style_;
+  float strength_;
+  std::uint64_t seed_;
+  float lift_;
+  Print print_;          // of the object
+  Print clutter_print_;  // empty if there is none
+};
+
+}  // namespace sketchsplat

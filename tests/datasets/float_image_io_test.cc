@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/float_image_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "datasets/errors.h"
+#include "tests/datasets/temp_folder.h"
+
+namespace sketchsplat {
+namespace {
+
+Image<float> ramp(int width, int height, float low, float step) {
+  Image<float> image(width, height);
+  for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = low + step * float(i);
+  return image;
+}
+
+TEST(Exr, FloatsComeBackAsTheyWereWhateverTheirRange) {
+  const TempFolder folder;
+  Image<float> depth = ramp(37, 21, -3.7f, 0.1f);
+  depth.at(3, 4) = 1e30f;
+  depth.at(4, 4) = std::numeric_limits<float>::infinity();
+  write_exr(folder.file("depth.exr"), {{"Z", depth}}, false);
+  const auto back = read_exr(folder.file("depth.exr"));
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(back[0].name, "Z");
+  EXPECT_EQ(back[0].values.width, 37);
+  EXPECT_EQ(back[0].values.height, 21);
+  EXPECT_EQ(back[0].values.data, depth.data);
+}
+
+TEST(Exr, HalvesKeepTheOrderOfChannelsAndElevenBits) {
+  const TempFolder folder;
+  const Image<float> x = ramp(16, 8, -1.0f, 0.01f), y = ramp(16, 8, 0.0f, 0.002f),
+                     z = ramp(16, 8, 1.0f, -0.005f);
+  write_exr(folder.file("normal.exr"), {{"R", x}, {"G", y}, {"B", z}}, true);
+  const auto back = read_exr(folder.file("normal.exr"));
+  ASSERT_EQ(back.size(), 3u);
+  const Image<float>* expected[] = {&x, &y, &z};
+  const char* names[] = {"R", "G", "B"};
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(back[c].name, names[c]);
+    for (size_t i = 0; i < x.data.size(); ++i)
+      EXPECT_NEAR(back[c].values.data[i], expected[c]->data[i],
+                  std::abs(expected[c]->data[i]) / 2048 + 1e-7);
+  }
+}
+
+TEST(Exr, WhatCannotBeReadOrWrittenIsSaidAndLeavesNothing) {
+  const TempFolder folder;
+  EXPECT_THROW(read_exr(folder.path() + "/nothing.exr"), InputError);
+  EXPECT_THROW(read_exr(folder.write("text.exr", "no picture")), InputError);
+  EXPECT_THROW(write_exr(folder.path() + "/no/depth.exr", {{"Z", ramp(4, 4, 0, 1)}}, false),
+               OutputError);
+}
+
+TEST(Jpeg, LowerQualityLosesMoreAndAlphaNothing) {
+  Picture picture;
+  picture.red = Image<float>(64, 64, 0.2f);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      if (3 * x > y + 60) picture.red.at(x, y) = 0.8f;
+  picture.green = picture.blue = picture.alpha = picture.red;
+  const auto loss = [&](int quality) {
+    const Picture out = through_jpeg(picture, quality);
+    EXPECT_EQ(out.alpha.data, picture.alpha.data);
+    double sum = 0;
+    for (size_t i = 0; i < out.red.data.size(); ++i)
+      sum += std::pow(out.red.data[i] - picture.red.data[i], 2);
+    return std::sqrt(sum / double(out.red.data.size()));
+  };
+  const double best = loss(100), good = loss(80), bad = loss(10);
+  EXPECT_LT(best, 0.005);
+  EXPECT_LT(1.5 * best, good);
+  EXPECT_LT(1.5 * good, bad);
+}
+
+}  // namespace
+}  // namespace sketchsplat
