@@ -228,9 +228,9 @@ class Graph {
   std::vector<int> parts() const {
     std::vector<int> part(members_.size());
     std::iota(part.begin(), part.end(), 0);
+    std::map<int, int> of_node;
     for (bool changed = true; changed;) {  // labels sink to the smallest of their part
       changed = false;
-      std::map<int, int> of_node;
       for (int h = 0; h < int(2 * alive_.size()); ++h) {
         if (!alive_[h / 2] || closed(h / 2)) continue;
         const auto [it, first] = of_node.emplace(tail(h), part[h / 2]);
