@@ -111,7 +111,7 @@ TEST(Svg, DrawsEveryStrokeInFourViewsAndStatesItsScale) {
   for (size_t at = 0; (at = text.find("<path class=\"stroke ", at)) != std::string::npos; ++at)
     ++paths;
   EXPECT_EQ(paths, 4 * five_kinds().size());
-  EXPECT_NE(text.find("scale 1 : 1"), std::string::npos);
+  EXPECT_NE(text.find("scale 2 : 1"), std::string::npos);
   EXPECT_NE(text.find("a &#60; b"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   write_svg(empty, Sketch());
