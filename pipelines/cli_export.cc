@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -17,20 +18,22 @@ namespace {
 struct ExportArguments {
   std::string sketch, out;
   std::string format;  // empty: by the ending of `out`
-  double scale = StepOptions().scale;
+  CadOptions cad;
+  double min_confidence = 0;
   double deflection = 1e-4;
   double spacing = OutputOptions().point_spacing;
 };
 
-const std::vector<std::string> kFormats = {"step", "obj", "ply", "parametric", "sketch"};
+const std::vector<std::string> kFormats = {"step", "dxf",        "svg",   "obj",
+                                           "ply",  "parametric", "sketch"};
 
 // The format that the ending of a file name stands for; empty if none.
 std::string format_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".step" || ending == ".stp") return "step";
-  if (ending == ".obj") return "obj";
-  if (ending == ".ply") return "ply";
+  for (const char* same : {"dxf", "svg", "obj", "ply"})
+    if (ending == std::string(".") + same) return same;
   if (ending == ".json") return "parametric";
   return "";
 }
@@ -47,13 +50,16 @@ Sketch read_sketch(const std::string& given) {
 
 void write(std::ostream& out, const Sketch& sketch, const ExportArguments& arguments,
            const std::string& format) {
+  const std::string name = std::filesystem::path(arguments.out).stem().string();
+  const CadOptions& cad = arguments.cad;
   if (format == "step") {
-    StepOptions options;
-    options.name = std::filesystem::path(arguments.out).stem().string();
-    options.scale = arguments.scale;
-    write_step(out, sketch, options);
+    write_step(out, sketch, step_options(sketch, name, cad));
+  } else if (format == "dxf") {
+    write_dxf(out, sketch, {cad.scale, cad.unit});
+  } else if (format == "svg") {
+    write_svg(out, sketch, {name, cad.scale, cad.unit});
   } else if (format == "obj") {
-    write_obj(out, sketch, arguments.deflection);
+    write_obj(out, sketch, arguments.deflection, cad.scale);
   } else if (format == "ply") {
     const double size = sketch_extent(sketch).size;
     write_edge_points(out, sketch, arguments.spacing * (size > 0 ? size : 1));
@@ -64,11 +70,36 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
   }
 }
 
-void run_export(const ExportArguments& arguments) {
+// Options that the format cannot obey.
+void check(const ExportArguments& arguments, const std::string& format) {
+  const bool cad = format == "step" || format == "dxf" || format == "svg" || format == "obj";
+  if (!cad && arguments.cad.scale != 1)
+    throw UsageError("--scale is for step, dxf, svg and obj: " + format +
+                     " is in the scene's own units");
+  if (format != "step" && arguments.cad.faces)
+    throw UsageError("--faces is for step: " + format + " holds curves only");
+}
+
+// Strokes of unknown confidence stay.
+Sketch confident(const Sketch& sketch, double least, const std::string& path, Progress* progress) {
+  std::vector<bool> keep;
+  bool known = false;
+  for (const Evidence& e : sketch.evidence) {
+    known |= !std::isnan(e.confidence);
+    keep.push_back(!(e.confidence < least));
+  }
+  if (least > 0 && !known && sketch.size() > 0)
+    progress->warn(path + " knows no confidence: --min-confidence leaves nothing out");
+  return keep_strokes(sketch, keep);
+}
+
+void run_export(const ExportArguments& arguments, Progress* progress) {
   const std::string format = arguments.format.empty() ? format_of(arguments.out) : arguments.format;
   if (format.empty())
     throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
-  const Sketch sketch = read_sketch(arguments.sketch);
+  check(arguments, format);
+  const Sketch all = read_sketch(arguments.sketch);
+  const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
   write_atomically(arguments.out,
                    [&](std::ostream& out) { write(out, sketch, arguments, format); });
 }
@@ -87,17 +118,23 @@ Verb export_verb() {
   out.short_name = "o";
   f.choose("format", &arguments->format, kFormats, "If left out, the ending of FILE decides");
   f.group("Output");
-  f.add("scale", &arguments->scale, "mm per world unit", 1e-9, 1e9, "Size of a world unit in STEP");
+  f.add("min-confidence", &arguments->min_confidence, "", 0, 1,
+        "Less confident strokes are left out, unless nobody knows");
   f.add("deflection", &arguments->deflection, "of the extent", 1e-7, 0.1,
         "Largest distance of a chord to its curve in OBJ");
   f.add("spacing", &arguments->spacing, "of the extent", 1e-5, 1, "Distance of the samples in PLY");
+  list_fields(&arguments->cad, &f);
   Verb verb;
   verb.name = "export";
   verb.summary = "Write a sketch in another format";
-  verb.examples = {"sketchsplat export out/part/sketch.json --format step --out part.step",
+  verb.examples = {"sketchsplat export out/part/sketch.json --out part.step --unit inch --scale 2",
+                   "sketchsplat export out/part -o part.step --faces --scale 50",
+                   "sketchsplat export out/part -o part.dxf --scale 50",
                    "sketchsplat export out/part -o part.obj --deflection 1e-5"};
   verb.fields = f.list;
-  verb.run = [arguments](const CommonOptions&, Progress*) { run_export(*arguments); };
+  verb.run = [arguments](const CommonOptions&, Progress* progress) {
+    run_export(*arguments, progress);
+  };
   return verb;
 }
 

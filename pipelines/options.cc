@@ -158,13 +158,21 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
 }
 
+void list_fields(CadOptions* o, Fields* f) {
+  f->group("Files for CAD programs");
+  f->choose("unit", &o->unit, length_unit_names(), "Unit of the lengths in the file");
+  f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit");
+  f->add("faces", &o->faces, "Write closed planar loops as faces in STEP");
+  f->add("face-tolerance", &o->face.tolerance, "of the extent", 1e-9, 0.1,
+         "Distance of a face's edges from its plane");
+}
+
 void list_fields(OutputOptions* o, Fields* f) {
   f->group("Output");
   f->add("overlays", &o->overlays, "views", 0, 100, "Views over which the curves are drawn");
   f->add("point-spacing", &o->point_spacing, "of the extent", 1e-5, 1,
          "Distance of the samples in edge_points.ply");
-  f->add("step-scale", &o->step_scale, "mm per world unit", 1e-9, 1e9,
-         "Size of a world unit in sketch.step");
+  list_fields(&o->cad, f);
 }
 
 std::vector<std::string> preset_names() {

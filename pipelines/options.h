@@ -16,7 +16,9 @@
 #include "pipelines/optimize.h"
 #include "pipelines/polish.h"
 #include "pipelines/select.h"
+#include "sketches/length_unit.h"
 #include "sketches/segment.h"
+#include "topology/planar_faces.h"
 #include "topology/simplify.h"
 
 namespace sketchsplat {
@@ -51,11 +53,19 @@ struct ReconstructOptions {
   bool final_polish = true;  ///< end on the edgels themselves
 };
 
+/// What files for CAD programs say beside the curves.
+struct CadOptions {
+  LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
+  double scale = 1.0;                         ///< units per world unit
+  bool faces = false;                         ///< closed planar loops as faces, in STEP
+  PlanarFaceOptions face;
+};
+
 /// What is written beside the sketch, and how.
 struct OutputOptions {
   int overlays = 4;              ///< views that are drawn over
   double point_spacing = 0.005;  ///< fraction of the sketch's largest extent
-  double step_scale = 1.0;       ///< mm in the STEP file per world unit
+  CadOptions cad;                ///< of sketch.step
 };
 
 /// The members of the option structs, as --help, reports and README show them. To add an option: a
@@ -64,6 +74,7 @@ void list_fields(CommonOptions* options, Fields* fields);
 void list_fields(DetectOptions* options, Fields* fields);
 void list_fields(MapOptions* options, Fields* fields);
 void list_fields(ReconstructOptions* options, Fields* fields);
+void list_fields(CadOptions* options, Fields* fields);
 void list_fields(OutputOptions* options, Fields* fields);
 void list_detector(std::string* detector, Fields* fields);
 

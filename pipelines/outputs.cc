@@ -64,10 +64,10 @@ void write_sketch(const std::string& folder, const Sketch& sketch, const Scene& 
   write_atomically(folder + "/parametric_edges.json",
                    [&](std::ostream& out) { write_parametric_edges(out, sketch); });
   write_atomically(folder + "/sketch.obj", [&](std::ostream& out) { write_obj(out, sketch); });
-  StepOptions step;
-  step.name = fs::path(scene.folder + "/.").lexically_normal().parent_path().filename().string();
-  if (step.name.empty()) step.name = "sketch";
-  step.scale = options.step_scale;
+  std::string name =
+      fs::path(scene.folder + "/.").lexically_normal().parent_path().filename().string();
+  if (name.empty()) name = "sketch";
+  const StepOptions step = step_options(sketch, name, options.cad);
   write_atomically(folder + "/sketch.step",
                    [&](std::ostream& out) { write_step(out, sketch, step); });
   const double size = sketch_extent(sketch).size;
@@ -77,6 +77,15 @@ void write_sketch(const std::string& folder, const Sketch& sketch, const Scene& 
 }
 
 }  // namespace
+
+StepOptions step_options(const Sketch& sketch, const std::string& name, const CadOptions& options) {
+  StepOptions step;
+  step.name = name;
+  step.scale = options.scale;
+  step.unit = options.unit;
+  if (options.faces) step.faces = planar_faces(sketch, options.face);
+  return step;
+}
 
 void write_outputs(const std::string& folder, Reconstruction reconstruction, const Scene& scene,
                    ReconstructOptions reconstruct_options, OutputOptions output_options,

@@ -5,6 +5,7 @@
 
 #include "pipelines/options.h"
 #include "pipelines/reconstruct.h"
+#include "sketches/io.h"
 
 namespace sketchsplat {
 
@@ -14,5 +15,8 @@ namespace sketchsplat {
 void write_outputs(const std::string& folder, Reconstruction reconstruction, const Scene& scene,
                    ReconstructOptions reconstruct_options, OutputOptions output_options,
                    Progress* progress);
+
+/// What write_step is to be told for this sketch.
+StepOptions step_options(const Sketch& sketch, const std::string& name, const CadOptions& options);
 
 }  // namespace sketchsplat

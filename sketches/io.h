@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sketches/face.h"
+#include "sketches/length_unit.h"
 #include "sketches/sketch.h"
 
 namespace sketchsplat {
@@ -25,17 +27,43 @@ void write_parametric_edges(std::ostream& out, const Sketch& sketch);
 
 /// All `v` first, then two-vertex `l` segments grouped by `o` per stroke; junctions share a vertex.
 /// Chords stay within `deflection` (fraction of the sketch's largest extent) of the curve.
-void write_obj(std::ostream& out, const Sketch& sketch, double deflection = 1e-4);
+/// Coordinates are multiplied by `scale`.
+void write_obj(std::ostream& out, const Sketch& sketch, double deflection = 1e-4,
+               double scale = 1.0);
 
 struct StepOptions {
-  std::string name = "sketch";  ///< of the product, as CAD programs show it
-  double scale = 1.0;           ///< file unit (mm) per world unit
+  std::string name = "sketch";                ///< of the product, as CAD programs show it
+  double scale = 1.0;                         ///< units per world unit
+  LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
+  std::vector<PlanarFace> faces;              ///< written as such; their strokes bound them
 };
 /// AP214 edge-based wireframe: one product, one vertex per junction; LINE, CIRCLE, ELLIPSE,
-/// B_SPLINE_CURVE as such, one CONNECTED_EDGE_SET per unbranched chain; a colour by kind. Arcs
-/// flatter than 1e-7 of the extent become lines. The name is UTF-8. No time stamp, so the same
-/// sketch gives the same bytes. Without strokes: a valid file with a product and nothing in it.
+/// B_SPLINE_CURVE as such, one CONNECTED_EDGE_SET per unbranched chain; a colour and a layer by
+/// kind, an edge is named by kind and index. Arcs flatter than 1e-7 of the extent become lines. The
+/// name is UTF-8. No time stamp, so the same sketch gives the same bytes. Without strokes: a valid
+/// file with a product and nothing in it.
+/// Faces go into a shell-based surface model beside the wireframe (related representations); a
+/// stroke is in one of the two, so that readers count each once.
 void write_step(std::ostream& out, const Sketch& sketch, const StepOptions& options = {});
+
+struct DxfOptions {
+  double scale = 1.0;                         ///< units per world unit
+  LengthUnit unit = LengthUnit::kMillimetre;  ///< $INSUNITS
+};
+/// AutoCAD 2000 DXF (ASCII): LINE, ARC, CIRCLE, ELLIPSE, SPLINE on a layer by kind. Arcs and
+/// circles lie in the plane of their extrusion direction (arbitrary axis algorithm). Arcs flatter
+/// than 1e-7 of the extent become lines.
+void write_dxf(std::ostream& out, const Sketch& sketch, const DxfOptions& options = {});
+
+struct SvgOptions {
+  std::string name = "sketch";                ///< UTF-8
+  double scale = 1.0;                         ///< units per world unit
+  LengthUnit unit = LengthUnit::kMillimetre;  ///< of the part's size that is stated
+};
+/// A3 sheet in mm with front, top, right and isometric view in third-angle projection, z up, front
+/// along y; at the largest scale of 1, 2, 5 x 10^k that fits. Nothing is hidden. Lines, elliptical
+/// arcs and cubics are exact; each path is of class `stroke` and its kind.
+void write_svg(std::ostream& out, const Sketch& sketch, const SvgOptions& options = {});
 
 /// Binary little-endian PLY: samples of all strokes every `spacing` world units with
 /// `stroke_index`.

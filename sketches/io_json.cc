@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <istream>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -50,6 +51,7 @@ Json json_of(const Sketch& sketch, int i) {
   out["support_views"] = e.support_views;
   out["rms_px"] = e.rms_px;
   out["sigma"] = e.sigma;
+  if (!std::isnan(e.confidence)) out["confidence"] = e.confidence;
   return out;
 }
 
@@ -137,6 +139,7 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
     e.support_views = reader.integer(j["support_views"], "a count as support_views in " + where);
   e.rms_px = reader.number(j, "rms_px", e.rms_px, where);
   e.sigma = reader.number(j, "sigma", e.sigma, where);
+  e.confidence = reader.number(j, "confidence", e.confidence, where);
   sketch->add_stroke(kind, ends[0], ends[1], points, e);
 }
 

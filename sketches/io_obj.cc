@@ -49,18 +49,18 @@ void write_vertex(std::ostream& out, const Eigen::Vector3d& p) {
 
 }  // namespace
 
-void write_obj(std::ostream& out, const Sketch& sketch, double deflection) {
+void write_obj(std::ostream& out, const Sketch& sketch, double deflection, double scale) {
   assert(deflection > 0);
   const double distance = deflection * largest_extent(sketch);
   std::vector<int> chords(sketch.size());
   out << "# sketchsplat: edges as segments\n";
-  for (int i = 0; i < sketch.nodes.cols(); ++i) write_vertex(out, sketch.nodes.col(i));
+  for (int i = 0; i < sketch.nodes.cols(); ++i) write_vertex(out, scale * sketch.nodes.col(i));
   for (int s = 0; s < sketch.size(); ++s) {
     chords[s] = num_chords(sketch, s, distance);
     Eigen::Vector3d p, d;
     for (int i = is_closed(sketch.strokes[s].kind) ? 0 : 1; i < chords[s]; ++i) {
       evaluate_stroke(sketch, s, double(i) / chords[s], &p, &d);
-      write_vertex(out, p);
+      write_vertex(out, scale * p);
     }
   }
   int inner = int(sketch.nodes.cols()) + 1;  // OBJ counts from 1

@@ -2,139 +2,32 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <ostream>
 
 #include "sketches/conic.h"
 #include "sketches/curve.h"
 #include "sketches/io.h"
-#include "sketches/io_number.h"
+#include "sketches/step_file.h"
 
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
+using step::list;
+using step::quoted;
+using step::real;
+using step::reference;
+using step::StepFile;
 
 constexpr int kKinds = 5;
-// Colours of the kinds, in the order of StrokeKind: dark grey, blue, green, violet, orange.
-constexpr double kColour[kKinds][3] = {
-    {0.15, 0.15, 0.15}, {0.0, 0.35, 0.85}, {0.0, 0.6, 0.3}, {0.6, 0.1, 0.7}, {0.9, 0.45, 0.0}};
+// Of the kinds, in the order of StrokeKind, and of faces: dark grey, blue, green, violet, orange;
+// light grey.
+constexpr double kColour[kKinds + 1][3] = {{0.15, 0.15, 0.15}, {0.0, 0.35, 0.85}, {0.0, 0.6, 0.3},
+                                           {0.6, 0.1, 0.7},    {0.9, 0.45, 0.0},  {0.8, 0.8, 0.8}};
+constexpr const char* kLayer[kKinds + 1] = {"line", "arc", "circle", "ellipse", "spline", "face"};
 
 // A share of the sketch's extent that no CAD program looks at: arcs flatter than it are lines.
 constexpr double kUncertainty = 1e-7;
-
-std::string real(double x) {
-  std::string text = shortest(x == 0 ? 0.0 : x);  // no negative zero
-  const size_t e = text.find('e');
-  std::string mantissa = text.substr(0, e);
-  if (mantissa.find('.') == std::string::npos) mantissa += '.';
-  return e == std::string::npos ? mantissa : mantissa + "E" + text.substr(e + 1);
-}
-
-std::string triple(const Vector3d& p) {
-  return "(" + real(p.x()) + "," + real(p.y()) + "," + real(p.z()) + ")";
-}
-
-// The code point at `i` of UTF-8 text, and `i` moved behind it; U+FFFD for what is no UTF-8.
-uint32_t decode(const std::string& text, size_t* i) {
-  const auto byte = [&](size_t k) -> uint32_t { return k < text.size() ? uint8_t(text[k]) : 0; };
-  const uint32_t first = byte((*i)++);
-  const int more = first < 0x80       ? 0
-                   : first >> 5 == 6  ? 1
-                   : first >> 4 == 14 ? 2
-                   : first >> 3 == 30 ? 3
-                                      : -1;
-  if (more == 0) return first;
-  if (more < 0) return 0xfffd;
-  uint32_t code = first & (0x3f >> more);
-  for (int k = 0; k < more; ++k) {
-    if (byte(*i) >> 6 != 2) return 0xfffd;
-    code = code << 6 | (byte((*i)++) & 0x3f);
-  }
-  return code > 0x10ffff ? 0xfffd : code;
-}
-
-// A string of ISO 10303-21: quotes and backslashes doubled, all but printable ASCII in hexadecimal.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (size_t i = 0; i < text.size();) {
-    const uint32_t code = decode(text, &i);
-    if (code == '\'' || code == '\\') {
-      out += std::string(2, char(code));
-    } else if (code >= 32 && code < 127) {
-      out += char(code);
-    } else {
-      char hex[24];
-      std::snprintf(hex, sizeof(hex), code > 0xffff ? "\\X4\\%08X\\X0\\" : "\\X2\\%04X\\X0\\",
-                    code);
-      out += hex;
-    }
-  }
-  return out + "'";
-}
-
-std::string reference(int id) { return "#" + std::to_string(id); }
-
-std::string list(const std::vector<int>& ids) {
-  std::string out = "(";
-  for (size_t i = 0; i < ids.size(); ++i) out += (i ? "," : "") + reference(ids[i]);
-  return out + ")";
-}
-
-// Writes numbered entities; every method returns the number of the one that stands for the whole.
-class StepFile {
- public:
-  StepFile(std::ostream& out, double scale) : out_(out), scale_(scale) {}
-
-  int add(const std::string& entity) {
-    out_ << "#" << ++last_ << "=" << entity << ";\n";
-    return last_;
-  }
-  int point(const Vector3d& p) { return add("CARTESIAN_POINT(''," + triple(scale_ * p) + ")"); }
-  int direction(const Vector3d& d) { return add("DIRECTION(''," + triple(d) + ")"); }
-  int vertex(const Vector3d& p) { return add("VERTEX_POINT(''," + reference(point(p)) + ")"); }
-  int placement(const Vector3d& origin, const Vector3d& axis, const Vector3d& x) {
-    const int o = point(origin), a = direction(axis), r = direction(x);
-    return add("AXIS2_PLACEMENT_3D(''," + reference(o) + "," + reference(a) + "," + reference(r) +
-               ")");
-  }
-  int line(const Vector3d& begin, const Vector3d& end) {
-    const int p = point(begin), d = direction((end - begin).normalized());
-    const int v =
-        add("VECTOR(''," + reference(d) + "," + real(scale_ * (end - begin).norm()) + ")");
-    return add("LINE(''," + reference(p) + "," + reference(v) + ")");
-  }
-  int circle(const Vector3d& centre, const Vector3d& normal, const Vector3d& x, double radius) {
-    const int axes = placement(centre, normal, x);
-    return add("CIRCLE(''," + reference(axes) + "," + real(scale_ * radius) + ")");
-  }
-  int ellipse(const Vector3d& centre, const EllipseAxes& axes) {
-    const int frame =
-        placement(centre, axes.major.cross(axes.minor).normalized(), axes.major.normalized());
-    return add("ELLIPSE(''," + reference(frame) + "," + real(scale_ * axes.major.norm()) + "," +
-               real(scale_ * axes.minor.norm()) + ")");
-  }
-  int cubic(const ControlPoints& c) {
-    std::vector<int> points;
-    for (int k = 0; k < 4; ++k) points.push_back(point(c.p[k]));
-    return add("B_SPLINE_CURVE_WITH_KNOTS('',3," + list(points) +
-               ",.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),.PIECEWISE_BEZIER_KNOTS.)");
-  }
-
- private:
-  std::ostream& out_;
-  double scale_;
-  int last_ = 0;
-};
-
-// A unit vector square to a unit normal, along the world's axes as far as it can be.
-Vector3d plain_direction(const Vector3d& normal) {
-  int k;
-  normal.cwiseAbs().minCoeff(&k);
-  const Vector3d axis = Vector3d::Unit(k);
-  return (axis - normal * normal[k]).normalized();
-}
 
 // EDGE_CURVE of a stroke; a closed one gets a vertex of its own and uses it twice.
 int write_edge(const Sketch& sketch, int s, const std::vector<int>& vertex, double uncertainty,
@@ -160,7 +53,7 @@ int write_edge(const Sketch& sketch, int s, const std::vector<int>& vertex, doub
     }
     case StrokeKind::kCircle: {
       const CircleParameters k = circle_parameters(sketch, s);
-      const Vector3d x = plain_direction(k.normal);
+      const Vector3d x = step::plain_direction(k.normal);
       curve = file->circle(k.centre, k.normal, x, k.radius);
       begin = end = file->vertex(k.centre + k.radius * x);
       break;
@@ -180,13 +73,13 @@ int write_edge(const Sketch& sketch, int s, const std::vector<int>& vertex, doub
                    "," + reference(curve) + ",.T.)");
 }
 
-// Strokes in chains that end where not exactly two strokes meet (a closed chain anywhere).
+// Free strokes in chains that end where not exactly two strokes meet (a closed chain anywhere).
 // Not whole components: OpenCASCADE reads every CONNECTED_EDGE_SET as a wire and repairs it, and
 // where a wire branches the repair merges vertices that are an edge apart.
-std::vector<std::vector<int>> chains(const Sketch& sketch) {
+std::vector<std::vector<int>> chains(const Sketch& sketch, const std::vector<bool>& free) {
   std::vector<std::vector<int>> at_node(sketch.nodes.cols()), out;
   for (int i = 0; i < sketch.size(); ++i) {
-    if (is_closed(sketch.strokes[i].kind)) continue;
+    if (!free[i] || is_closed(sketch.strokes[i].kind)) continue;
     at_node[sketch.strokes[i].begin].push_back(i);
     at_node[sketch.strokes[i].end].push_back(i);
   }
@@ -203,7 +96,7 @@ std::vector<std::vector<int>> chains(const Sketch& sketch) {
     }
   };
   for (int i = 0; i < sketch.size(); ++i) {
-    if (done[i]) continue;
+    if (done[i] || !free[i]) continue;
     done[i] = true;
     std::vector<int> chain;
     const Stroke& s = sketch.strokes[i];
@@ -218,16 +111,30 @@ std::vector<std::vector<int>> chains(const Sketch& sketch) {
   return out;
 }
 
-// Units (millimetres, radians) and the distance below which points are the same.
-int write_context(StepFile* file, double uncertainty) {
-  const int mm = file->add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))");
+int write_length_unit(StepFile* file, LengthUnit unit) {
+  const auto si = [&](const std::string& prefix) {
+    return file->add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(" + prefix + ",.METRE.))");
+  };
+  if (unit == LengthUnit::kMillimetre) return si(".MILLI.");
+  if (unit == LengthUnit::kCentimetre) return si(".CENTI.");
+  if (unit == LengthUnit::kMetre) return si("$");
+  const int size = file->add("LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(" + real(millimetres(unit)) +
+                             ")," + reference(si(".MILLI.")) + ")");
+  const int length = file->add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)");
+  return file->add("(CONVERSION_BASED_UNIT('INCH'," + reference(size) +
+                   ")LENGTH_UNIT()NAMED_UNIT(" + reference(length) + "))");
+}
+
+// Units and the distance, in them, below which points are the same.
+int write_context(StepFile* file, LengthUnit unit, double uncertainty) {
+  const int length = write_length_unit(file, unit);
   const int rad = file->add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
   const int sr = file->add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
   const int u =
       file->add("UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(" + real(uncertainty) + ")," +
-                reference(mm) + ",'distance_accuracy_value','maximum model space distance')");
+                reference(length) + ",'distance_accuracy_value','maximum model space distance')");
   return file->add("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((" +
-                   reference(u) + "))GLOBAL_UNIT_ASSIGNED_CONTEXT(" + list({mm, rad, sr}) +
+                   reference(u) + "))GLOBAL_UNIT_ASSIGNED_CONTEXT(" + list({length, rad, sr}) +
                    ")REPRESENTATION_CONTEXT('',''))");
 }
 
@@ -250,42 +157,92 @@ void write_product(StepFile* file, const std::string& name, int representation) 
             reference(representation) + ")");
 }
 
-// One style a kind, one STYLED_ITEM an edge.
-void write_colours(StepFile* file, const Sketch& sketch, const std::vector<int>& edges,
-                   int context) {
-  int style[kKinds] = {};
-  std::vector<int> items;
+// How edges of a kind look; faces come after the kinds.
+int write_style(StepFile* file, int kind, int font) {
+  const double* rgb = kColour[kind];
+  const std::string colour = reference(
+      file->add("COLOUR_RGB(''," + real(rgb[0]) + "," + real(rgb[1]) + "," + real(rgb[2]) + ")"));
+  int style = 0;
+  if (kind < kKinds) {
+    style = file->add("CURVE_STYLE(''," + reference(font) + ",POSITIVE_LENGTH_MEASURE(0.1)," +
+                      colour + ")");
+  } else {
+    const int fill = file->add("FILL_AREA_STYLE_COLOUR(''," + colour + ")");
+    const int area = file->add("FILL_AREA_STYLE(''," + list({fill}) + ")");
+    const int surface = file->add("SURFACE_STYLE_FILL_AREA(" + reference(area) + ")");
+    const int side = file->add("SURFACE_SIDE_STYLE(''," + list({surface}) + ")");
+    style = file->add("SURFACE_STYLE_USAGE(.BOTH.," + reference(side) + ")");
+  }
+  return file->add("PRESENTATION_STYLE_ASSIGNMENT(" + list({style}) + ")");
+}
+
+// One style and one layer a kind, one STYLED_ITEM an edge or face.
+void write_presentation(StepFile* file, const Sketch& sketch, const std::vector<int>& edges,
+                        const std::vector<int>& faces, int context) {
+  std::vector<int> of_kind[kKinds + 1], items;
+  for (int i = 0; i < sketch.size(); ++i) of_kind[int(sketch.strokes[i].kind)].push_back(edges[i]);
+  of_kind[kKinds] = faces;
   const int font = file->add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')");
-  for (int i = 0; i < sketch.size(); ++i) {
-    const int kind = int(sketch.strokes[i].kind);
-    if (style[kind] == 0) {
-      const double* rgb = kColour[kind];
-      const int colour = file->add("COLOUR_RGB(''," + real(rgb[0]) + "," + real(rgb[1]) + "," +
-                                   real(rgb[2]) + ")");
-      const int curve = file->add("CURVE_STYLE(''," + reference(font) +
-                                  ",POSITIVE_LENGTH_MEASURE(0.1)," + reference(colour) + ")");
-      style[kind] = file->add("PRESENTATION_STYLE_ASSIGNMENT(" + list({curve}) + ")");
-    }
-    items.push_back(
-        file->add("STYLED_ITEM('colour'," + list({style[kind]}) + "," + reference(edges[i]) + ")"));
+  for (int kind = 0; kind <= kKinds; ++kind) {
+    if (of_kind[kind].empty()) continue;
+    const int style = write_style(file, kind, font);
+    for (const int item : of_kind[kind])
+      items.push_back(
+          file->add("STYLED_ITEM('colour'," + list({style}) + "," + reference(item) + ")"));
+    file->add("PRESENTATION_LAYER_ASSIGNMENT(" + quoted(kLayer[kind]) + ",''," +
+              list(of_kind[kind]) + ")");
   }
   file->add("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION(''," + list(items) + "," +
             reference(context) + ")");
 }
 
-// Edges of all strokes and the model that holds them, one CONNECTED_EDGE_SET a chain.
-int write_wireframe(StepFile* file, const Sketch& sketch, const std::string& name,
-                    double uncertainty, std::vector<int>* edges) {
-  std::vector<int> vertex, sets;
+std::vector<int> write_edges(StepFile* file, const Sketch& sketch, double uncertainty) {
+  std::vector<int> vertex, edges;
   for (int i = 0; i < sketch.nodes.cols(); ++i) vertex.push_back(file->vertex(sketch.nodes.col(i)));
   for (int i = 0; i < sketch.size(); ++i)
-    edges->push_back(write_edge(sketch, i, vertex, uncertainty, file));
-  for (const std::vector<int>& chain : chains(sketch)) {
+    edges.push_back(write_edge(sketch, i, vertex, uncertainty, file));
+  return edges;
+}
+
+// The edges that bound no face, one CONNECTED_EDGE_SET a chain; 0 if there is none.
+int write_wireframe(StepFile* file, const Sketch& sketch, const std::vector<int>& edges,
+                    const std::vector<PlanarFace>& faces, const std::string& name) {
+  std::vector<bool> free(sketch.size(), true);
+  for (const PlanarFace& face : faces) {
+    for (const LoopStroke& s : face.outer) free[s.stroke] = false;
+    for (const Loop& hole : face.holes)
+      for (const LoopStroke& s : hole) free[s.stroke] = false;
+  }
+  std::vector<int> sets;
+  for (const std::vector<int>& chain : chains(sketch, free)) {
     std::vector<int> ids;
-    for (int i : chain) ids.push_back((*edges)[i]);
+    for (int i : chain) ids.push_back(edges[i]);
     sets.push_back(file->add("CONNECTED_EDGE_SET(''," + list(ids) + ")"));
   }
+  if (sets.empty()) return 0;
   return file->add("EDGE_BASED_WIREFRAME_MODEL(" + quoted(name) + "," + list(sets) + ")");
+}
+
+// The shape of the product: a wireframe, or a plain representation that a wireframe and faces are
+// related to. A wireframe must not be empty, a plain representation may be.
+int write_shape(StepFile* file, const std::string& name, int origin, int wireframe, int surfaces,
+                int context) {
+  const auto representation = [&](const char* entity, const std::vector<int>& items) {
+    return file->add(std::string(entity) + "(" + quoted(name) + "," + list(items) + "," +
+                     reference(context) + ")");
+  };
+  if (wireframe != 0 && surfaces == 0)
+    return representation("EDGE_BASED_WIREFRAME_SHAPE_REPRESENTATION", {origin, wireframe});
+  const int shape = representation("SHAPE_REPRESENTATION", {origin});
+  const auto relate = [&](int other) {
+    file->add("SHAPE_REPRESENTATION_RELATIONSHIP('',''," + reference(shape) + "," +
+              reference(other) + ")");
+  };
+  if (surfaces != 0)
+    relate(representation("MANIFOLD_SURFACE_SHAPE_REPRESENTATION", {origin, surfaces}));
+  if (wireframe != 0)
+    relate(representation("EDGE_BASED_WIREFRAME_SHAPE_REPRESENTATION", {origin, wireframe}));
+  return shape;
 }
 
 }  // namespace
@@ -298,21 +255,18 @@ void write_step(std::ostream& out, const Sketch& sketch, const StepOptions& opti
       << ",'1970-01-01T00:00:00',(''),(''),'sketchsplat','sketchsplat','');\n"
       << "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));\nENDSEC;\nDATA;\n";
   StepFile file(out, options.scale);
-  const int context = write_context(&file, uncertainty * options.scale);
+  const int context = write_context(&file, options.unit, uncertainty * options.scale);
   const int origin = file.placement({0, 0, 0}, {0, 0, 1}, {1, 0, 0});
-  const std::string label = quoted(options.name);
-  if (sketch.size() == 0) {  // a wireframe must not be empty, a plain representation may be
-    const int shape = file.add("SHAPE_REPRESENTATION(" + label + "," + list({origin}) + "," +
-                               reference(context) + ")");
-    write_product(&file, options.name, shape);
-  } else {
-    std::vector<int> edges;
-    const int model = write_wireframe(&file, sketch, options.name, uncertainty, &edges);
-    const int shape = file.add("EDGE_BASED_WIREFRAME_SHAPE_REPRESENTATION(" + label + "," +
-                               list({origin, model}) + "," + reference(context) + ")");
-    write_product(&file, options.name, shape);
-    write_colours(&file, sketch, edges, context);
-  }
+  const std::vector<int> edges = write_edges(&file, sketch, uncertainty);
+  std::vector<int> faces;
+  const int surfaces =
+      options.faces.empty()
+          ? 0
+          : step::write_surface_model(&file, options.faces, edges, options.name, &faces);
+  const int wireframe = write_wireframe(&file, sketch, edges, options.faces, options.name);
+  write_product(&file, options.name,
+                write_shape(&file, options.name, origin, wireframe, surfaces, context));
+  if (sketch.size() > 0) write_presentation(&file, sketch, edges, faces, context);
   out << "ENDSEC;\nEND-ISO-10303-21;\n";
 }
 

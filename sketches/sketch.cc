@@ -102,6 +102,7 @@ std::vector<std::string> validate(const Sketch& sketch) {
   for (size_t i = 0; i < sketch.evidence.size(); ++i) {
     const Evidence& e = sketch.evidence[i];
     if (!(e.opacity >= 0 && e.opacity <= 1)) complain(int(i), "has an opacity outside [0, 1]");
+    if (e.confidence < 0 || e.confidence > 1) complain(int(i), "has a confidence outside [0, 1]");
     if (e.support_views < 0 || !std::isfinite(e.rms_px) || !std::isfinite(e.sigma) ||
         e.rms_px < 0 || e.sigma < 0)
       complain(int(i), "has negative or infinite evidence");

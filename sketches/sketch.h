@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct Evidence {
   int support_views = 0;  ///< views that see it
   double rms_px = 0;      ///< root mean square distance to the edgels that it explains
   double sigma = 0;       ///< standard deviation of its position, world units
+  /// Probability that it is an edge of the object, in [0, 1]; NaN if unknown.
+  double confidence = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Curves over shared nodes: strokes that meet hold the same column of `nodes`. World units.

@@ -14,7 +14,7 @@ inline Sketch five_kinds() {
   Sketch s;
   const int a = s.add_node({0.1, 0.2, 0.3}), b = s.add_node({1.0, 0.1, 0.4});
   const int c = s.add_node({1.2, 0.9, 0.35}), d = s.add_node({0.2, 1.1, 0.5});
-  s.add_stroke(StrokeKind::kLine, a, b, {}, {0.9, 40, 0.08, 1e-4});
+  s.add_stroke(StrokeKind::kLine, a, b, {}, {0.9, 40, 0.08, 1e-4, 0.95});
   s.add_stroke(StrokeKind::kArc, b, c, {{1.4, 0.45, 0.5}}, {0.75, 31, 0.11, 2e-4});
   s.add_stroke(StrokeKind::kBezier, c, d, {{0.9, 1.5, 0.2}, {0.5, 0.8, 0.9}}, {1.0, 17, 0.3, 1e-3});
   s.add_stroke(StrokeKind::kLine, d, b, {}, {0.5, 3, 0.9, 1.0 / 3});

@@ -16,11 +16,17 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(SKETCHSPLAT_SOURCE_DIR) / "tests" / "golden";
 
+// parametric_edges.json ends in .edges here; PLY is binary: its numbers are compared elsewhere.
+constexpr const char* kExtensions[] = {".json", ".obj", ".step", ".dxf", ".svg", ".edges"};
+
 std::string written(const Sketch& s, const std::string& extension) {
   std::ostringstream out;
   if (extension == ".json") write_sketch_json(out, s);
   if (extension == ".obj") write_obj(out, s, 1e-2);
   if (extension == ".step") write_step(out, s, {"golden part", 100});
+  if (extension == ".dxf") write_dxf(out, s, {100});
+  if (extension == ".svg") write_svg(out, s, {"golden part", 100});
+  if (extension == ".edges") write_parametric_edges(out, s);
   return out.str();
 }
 
@@ -66,7 +72,7 @@ void expect_same(const std::string& text, const std::string& golden, const fs::p
 TEST(Golden, FilesOfEverySketchAreAsTheyWere) {
   if (std::getenv("SKETCHSPLAT_UPDATE_GOLDEN")) {
     fs::create_directories(kFolder);
-    for (const char* extension : {".json", ".obj", ".step"})
+    for (const char* extension : kExtensions)
       std::ofstream(kFolder / (std::string("five_kinds") + extension), std::ios::binary)
           << written(five_kinds(), extension);
   }
@@ -77,7 +83,7 @@ TEST(Golden, FilesOfEverySketchAreAsTheyWere) {
     ++sketches;
     std::ifstream in(entry.path());
     const Sketch s = read_sketch_json(in, entry.path().string());
-    for (const char* extension : {".json", ".obj", ".step"}) {
+    for (const char* extension : kExtensions) {
       const fs::path path = fs::path(entry.path()).replace_extension(extension);
       ASSERT_TRUE(fs::exists(path)) << path << " is missing";
       expect_same(written(s, extension), contents(path), path);
@@ -87,7 +93,7 @@ TEST(Golden, FilesOfEverySketchAreAsTheyWere) {
 }
 
 TEST(Golden, TheSameSketchGivesTheSameBytes) {
-  for (const char* extension : {".json", ".obj", ".step"}) {
+  for (const char* extension : kExtensions) {
     EXPECT_EQ(written(five_kinds(), extension), written(five_kinds(), extension));
     EXPECT_GT(written(five_kinds(), extension).size(), 500u);
   }

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+
+#include "sketches/closest.h"
+#include "sketches/curve.h"
+#include "sketches/io.h"
+#include "tests/sketches/five_kinds.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+struct DxfEntity {
+  std::string type, layer;
+  std::multimap<int, std::string> values;
+  double real(int code) const { return std::stod(values.find(code)->second); }
+  Vector3d point(int code) const { return {real(code), real(code + 10), real(code + 20)}; }
+};
+
+// Pairs of group code and value; entities of the section of that name, and the header's variables.
+struct Dxf {
+  std::vector<DxfEntity> entities;
+  std::map<std::string, std::string> header;
+  std::string last;
+};
+Dxf parse_dxf(const std::string& text) {
+  Dxf out;
+  std::istringstream in(text);
+  std::string code, value, section, variable;
+  while (std::getline(in, code) && std::getline(in, value)) {
+    const int c = std::stoi(code);
+    if (c == 0) out.last = value;
+    if (c == 2 && out.last == "SECTION") section = value;
+    if (section == "HEADER" && c == 9) variable = value;
+    if (section == "HEADER" && c != 9 && c != 0) out.header.emplace(variable, value);
+    if (section != "ENTITIES") continue;
+    if (c == 0 && value != "ENDSEC" && value != "SECTION") out.entities.push_back({value, "", {}});
+    if (c == 0 && value == "ENDSEC") section.clear();
+    if (out.entities.empty()) continue;
+    if (c == 8) out.entities.back().layer = value;
+    out.entities.back().values.emplace(c, value);
+  }
+  return out;
+}
+
+std::string dxf_of(const Sketch& s, const DxfOptions& options = {}) {
+  std::ostringstream out;
+  write_dxf(out, s, options);
+  return out.str();
+}
+
+// The arbitrary axis algorithm once more, from its description.
+void expect_arc_on_stroke(const DxfEntity& e, const Sketch& s, int i, double scale) {
+  const Vector3d n = e.point(210);
+  const Vector3d x = (std::abs(n.x()) < 1.0 / 64 && std::abs(n.y()) < 1.0 / 64 ? Vector3d(0, 1, 0)
+                                                                               : Vector3d(0, 0, 1))
+                         .cross(n)
+                         .normalized();
+  const Vector3d y = n.cross(x), c = e.point(10);
+  double from = 0, to = 360;
+  if (e.type == "ARC") from = e.real(50), to = e.real(51);
+  if (to <= from) to += 360;
+  EXPECT_NEAR((to - from) * M_PI / 180 * e.real(40), scale * stroke_length(s, i), 1e-6 * scale);
+  for (int k = 0; k <= 8; ++k) {
+    const double a = (from + (to - from) * k / 8) * M_PI / 180;
+    const Vector3d p =
+        x * (c.x() + e.real(40) * std::cos(a)) + y * (c.y() + e.real(40) * std::sin(a)) + n * c.z();
+    EXPECT_LT(distance_to_stroke(s, i, p / scale).distance, 1e-9);
+  }
+}
+
+TEST(Dxf, HoldsEveryKindOnItsLayerAndInItsPlace) {
+  Random random;
+  for (int round = 0; round < 5; ++round) {
+    const Sketch s = moved(five_kinds(), 1, random.rotation(), random.point());
+    const Dxf dxf = parse_dxf(dxf_of(s, {50, LengthUnit::kInch}));
+    ASSERT_EQ(int(dxf.entities.size()), s.size());
+    const char* types[] = {"LINE", "ARC", "SPLINE", "LINE", "CIRCLE", "ELLIPSE"};
+    for (int i = 0; i < s.size(); ++i) {
+      const DxfEntity& e = dxf.entities[i];
+      EXPECT_EQ(e.type, types[i]);
+      EXPECT_EQ(e.layer, types[i]);
+      if (e.type == "ARC" || e.type == "CIRCLE") {
+        expect_arc_on_stroke(e, s, i, 50);
+      } else if (e.type == "ELLIPSE") {
+        const Vector3d major = e.point(11), minor = e.real(40) * e.point(210).cross(major);
+        for (const double a : {0.0, 1.0, 2.5, 4.0}) {
+          const Vector3d p = e.point(10) + major * std::cos(a) + minor * std::sin(a);
+          EXPECT_LT(distance_to_stroke(s, i, p / 50).distance, 1e-9);
+        }
+      } else {
+        EXPECT_LT((e.point(10) / 50 - control_points(s, i).p[0]).norm(), 1e-12);
+      }
+    }
+    EXPECT_EQ(dxf.header.at("$INSUNITS"), "1");
+    EXPECT_EQ(dxf.header.at("$ACADVER"), "AC1015");
+    EXPECT_EQ(dxf.last, "EOF");
+  }
+  EXPECT_EQ(parse_dxf(dxf_of(Sketch())).last, "EOF");
+}
+
+TEST(Svg, DrawsEveryStrokeInFourViewsAndStatesItsScale) {
+  std::ostringstream out, empty;
+  write_svg(out, five_kinds(), {"a < b", 50, LengthUnit::kMillimetre});
+  const std::string text = out.str();
+  int paths = 0;
+  for (size_t at = 0; (at = text.find("<path class=\"stroke ", at)) != std::string::npos; ++at)
+    ++paths;
+  EXPECT_EQ(paths, 4 * five_kinds().size());
+  EXPECT_NE(text.find("scale 2 : 1"), std::string::npos);
+  EXPECT_NE(text.find("a &#60; b"), std::string::npos);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  write_svg(empty, Sketch());
+  EXPECT_NE(empty.str().find("</svg>"), std::string::npos);
+}
+
+TEST(Svg, DrawsACircleOfTenMillimetresAsSuchAndItsSideAsALine) {
+  Sketch s;
+  s.add_stroke(StrokeKind::kCircle, -1, -1, {{1, 2, 3}, {0, 0, 1}});
+  std::ostringstream out;
+  write_svg(out, s, {"disc", 10, LengthUnit::kMillimetre});
+  const std::string text = out.str();
+  const size_t top = text.find("<g id=\"top\">"), front = text.find("<g id=\"front\">");
+  ASSERT_NE(text.find("scale 5 : 1"), std::string::npos);
+  EXPECT_EQ(text.find(" A50,50 ", top), text.find(" A", top)) << "radius 10 mm, five times";
+  const std::string side = text.substr(front, text.find("</g>", front) - front);
+  EXPECT_EQ(side.find(" A"), std::string::npos);
+  EXPECT_NE(side.find(" L"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sketchsplat
