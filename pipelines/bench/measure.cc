@@ -96,6 +96,20 @@ void check_environment(const ChildResult& child) {
   if (child.status == kWrongUsage) throw UsageError(reason_of(child, 0));
 }
 
+// Threads are a matter of the run, not of the method.
+int threads_of(const BenchJob& job, int otherwise) {
+  for (const auto& [name, text] : job.reconstruct)
+    if (name == "threads" && text != "0") return std::stoi(text);
+  return otherwise;
+}
+
+std::vector<std::string> method_flags(const BenchJob& job, const std::vector<Field>& fields) {
+  OptionTexts options;
+  for (const auto& option : job.reconstruct)
+    if (option.first != "threads") options.push_back(option);
+  return flags_of(options, fields);
+}
+
 std::vector<Field> fields_of(const Verb& verb) { return verb.fields; }
 
 }  // namespace
@@ -118,9 +132,10 @@ std::string Measurer::scene_folder(const BenchJob& job) const {
 }
 
 std::string Measurer::key(const BenchJob& job) const {
-  std::string what = joined(flags_of(job.reconstruct, reconstruct_fields_));
+  std::string what = joined(method_flags(job, reconstruct_fields_));
   for (const auto& [name, text] : machine_) what += name + " " + text + "\n";
-  what += std::to_string(settings_.threads) + " " + std::to_string(settings_.repeats) + "\n";
+  what += std::to_string(threads_of(job, settings_.threads)) + " " +
+          std::to_string(settings_.repeats) + "\n";
   const std::string folder = scene_folder(job);
   return hash_of(what + (job.folder.empty() ? fs::path(folder).filename().string()
                                             : identity_of_folder(folder)));
@@ -144,9 +159,9 @@ bool Measurer::make_scene(const BenchJob& job, BenchRow* row) {
 bool Measurer::reconstruct(const BenchJob& job, const std::string& result, BenchRow* row) {
   std::vector<std::string> arguments = {"reconstruct", scene_folder(job), "--quiet", "--out",
                                         result};
-  const std::vector<std::string> flags = flags_of(job.reconstruct, reconstruct_fields_);
-  // What the job says of threads comes later, and wins.
-  arguments.insert(arguments.end(), {"--threads", std::to_string(settings_.threads)});
+  const std::vector<std::string> flags = method_flags(job, reconstruct_fields_);
+  const int threads = threads_of(job, settings_.threads);
+  arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
   arguments.insert(arguments.end(), flags.begin(), flags.end());
   ChildResult best;
   Json report;
@@ -205,13 +220,12 @@ const Measurer::SceneFacts& Measurer::facts_of(const std::string& folder) {
 
 BenchRow Measurer::measure(const BenchJob& job, const std::string& result) {
   BenchRow row = {job.scene, job.variant, machine_, {}};
-  row.set("threads", std::to_string(settings_.threads));
+  row.set("threads", std::to_string(threads_of(job, settings_.threads)));
   for (const auto& [name, text] : job.reconstruct)
-    if (name == "preset" || name == "detector" || name == "seed" || name == "threads")
-      row.set(name, text);
+    if (name == "preset" || name == "detector" || name == "seed") row.set(name, text);
   row.set("options", [&] {
     std::string all;
-    for (const std::string& word : flags_of(job.reconstruct, reconstruct_fields_))
+    for (const std::string& word : method_flags(job, reconstruct_fields_))
       all += (all.empty() ? "" : " ") + word;
     return all;
   }());
