@@ -176,7 +176,7 @@ TEST_F(Bench, ASuiteSynthesizesItsPartsAndReportsItsAxes) {
   std::ofstream(folder_ / "suite.yml") << R"(
 presets: [fast]
 parts: [box]
-synthesize: {views: 12, resolution: 200}
+synthesize: {views: 12, resolution: 200, blur: 0}
 axes:
   - {name: blur, vary: synthesize.blur, levels: [0, 20, 19]}
   - {name: threads, vary: reconstruct.threads, levels: [1, 2], report: constant}
