@@ -96,26 +96,27 @@ Chart growth_chart(const std::vector<GrowthResult>& results) {
   chart.height = 430;
   Panel time = {80, 60, 340, 310, "Time", results[0].axis->title, "s", true, true};
   Panel memory = {530, 60, 340, 310, "Peak memory", results[0].axis->title, "MB", true, true};
-  std::vector<std::string> variants;
+  size_t color = 0;
   for (const GrowthResult& g : results) {
-    if (std::find(variants.begin(), variants.end(), g.variant) == variants.end())
-      variants.push_back(g.variant);
     Series dots;
-    dots.color = series_color(2 * (variants.size() - 1) + (g.quantity != "total"));
+    dots.color = series_color(color++);
     dots.x = g.x;
     dots.y = g.y;
     Series law;
     law.color = dots.color;
     law.marker = Marker::kNone;
     law.line = true;
-    law.legend = g.variant + ", " + (g.quantity == "total" ? "time" : "memory") + ": exponent " +
-                 text_of(g.law.exponent, "%.2f") + " ± " + text_of(g.law.error, "%.2f");
+    const char* const what = g.quantity == "total"         ? "time"
+                             : g.quantity == "cpu_seconds" ? "CPU time"
+                                                           : "memory";
+    law.legend = g.variant + ", " + what + ": exponent " + text_of(g.law.exponent, "%.2f") + " ± " +
+                 text_of(g.law.error, "%.2f");
     const Summary x = summary_of(g.x);
     for (const double v : {x.low, x.high}) {
       law.x.push_back(v);
       law.y.push_back(g.law.factor * std::pow(v, g.law.exponent));
     }
-    Panel& panel = g.quantity == "total" ? time : memory;
+    Panel& panel = g.quantity == "peak_mb" ? memory : time;
     panel.series.push_back(dots);
     panel.series.push_back(law);
   }

@@ -191,7 +191,7 @@ std::vector<GrowthResult> growth_results(const Suite& suite, const std::vector<B
   for (const BenchAxis& axis : suite.axes) {
     if (axis.report != AxisReport::kExponent) continue;
     for (const BenchVariant& variant : suite.variants) {
-      for (const char* quantity : {"total", "peak_mb"}) {
+      for (const char* quantity : {"total", "cpu_seconds", "peak_mb"}) {
         GrowthResult g = {&axis, variant.name, quantity, {}, {}, {}};
         for (const BenchRow* row : rows_of(rows, axis, variant.name)) {
           if (row->label("status") != "0") continue;  // a failure takes no time to speak of

@@ -30,7 +30,7 @@ std::vector<AxisResult> axis_results(const Suite& suite, const std::vector<Bench
 /// How one quantity grows along an axis of exponents, over all its rows.
 struct GrowthResult {
   const BenchAxis* axis = nullptr;
-  std::string variant, quantity;  ///< "total" or "peak_mb"
+  std::string variant, quantity;  ///< "total", "cpu_seconds" or "peak_mb"
   std::vector<double> x, y;
   PowerLaw law;
 };

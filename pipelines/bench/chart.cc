@@ -70,7 +70,8 @@ std::vector<double> round_ticks(double low, double high, int count, bool log) {
   std::vector<double> ticks;
   if (!(low < high) || count < 1) return ticks;
   if (log) {
-    const std::vector<std::vector<int>> choices = {{1, 2, 5}, {1, 3}, {1}};
+    const std::vector<std::vector<int>> choices = {
+        {1, 2, 3, 4, 5, 6, 7, 8, 9}, {1, 2, 5}, {1, 3}, {1}};
     for (const auto& digits : choices) {
       ticks.clear();
       for (int d = int(std::floor(std::log10(low))); d <= int(std::ceil(std::log10(high))); ++d)
@@ -80,7 +81,8 @@ std::vector<double> round_ticks(double low, double high, int count, bool log) {
         }
       if (int(ticks.size()) <= count) break;
     }
-    return ticks;
+    if (ticks.size() >= 3 || high > 10 * low) return ticks;
+    ticks.clear();  // a small part of a decade is as good as linear
   }
   const double raw = (high - low) / count, power = std::pow(10.0, std::floor(std::log10(raw)));
   const double step = power * (raw > 5 * power ? 10 : raw > 2 * power ? 5 : raw > power ? 2 : 1);

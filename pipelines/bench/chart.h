@@ -56,8 +56,8 @@ Panel fitted(Panel panel);
 double chart_x(const Panel& panel, double x);
 double chart_y(const Panel& panel, double y);
 
-/// Values to label from low to high, at most about `count`: 1, 2 and 5 of every decade, or every
-/// decade, if `log`; else multiples of 1, 2 or 5 times a power of ten.
+/// Values to label from low to high, at most about `count`: if `log`, as many digits of every
+/// decade as there is room for; else multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> round_ticks(double low, double high, int count, bool log);
 
 /// Indices of the points that no other point beats: none has both less (or equal) x and more (or

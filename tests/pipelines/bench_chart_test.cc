@@ -30,6 +30,7 @@ TEST(RoundTicks, AreFewAndInside) {
               ElementsAre(testing::DoubleEq(1), testing::DoubleEq(2), testing::DoubleEq(5),
                           testing::DoubleEq(10)));
   EXPECT_THAT(round_ticks(0.01, 1e4, 8, true).size(), testing::Le(8u));
+  EXPECT_THAT(round_ticks(31, 39, 5, true), ElementsAre(32, 34, 36, 38)) << "no digit is inside";
   EXPECT_TRUE(round_ticks(1, 1, 5, false).empty());
 }
 
@@ -112,7 +113,11 @@ BenchRow level_row(const std::string& axis, const std::string& part, double leve
   return {part,
           "balanced",
           {{"axis", axis}, {"result", result}, {"status", "0"}},
-          {{"F5", f5}, {"total", 2 * level}, {"peak_mb", 30}, {"level", level}}};
+          {{"F5", f5},
+           {"total", 2 * level},
+           {"cpu_seconds", level * level},
+           {"peak_mb", 30},
+           {"level", level}}};
 }
 
 Suite suite_with_axes() {
@@ -148,9 +153,10 @@ TEST(AxisReport, SaysWhereAccuracyFallsWhatDiffersAndWhatGrows) {
   EXPECT_TRUE(limits[1].same_results);
   EXPECT_EQ(limits[1].f5_difference, 0);
   const std::vector<GrowthResult> growth = growth_results(suite, rows);
-  ASSERT_EQ(growth.size(), 2u);
+  ASSERT_EQ(growth.size(), 3u);
   EXPECT_NEAR(growth[0].law.exponent, 1, 1e-9);
-  EXPECT_NEAR(growth[1].law.exponent, 0, 1e-9);
+  EXPECT_NEAR(growth[1].law.exponent, 2, 1e-9);
+  EXPECT_NEAR(growth[2].law.exponent, 0, 1e-9);
   EXPECT_THAT(limits_markdown(limits),
               HasSubstr("| noise | balanced | 2 | 0 | 100.0 | 2 | - | 4 |"));
   EXPECT_THAT(limits_markdown(limits),
