@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <dlfcn.h>
 
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include "datasets/synthetic/plugin.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
+#include "pipelines/plugin_path.h"
 #include "pipelines/run_report.h"
 
 namespace sketchsplat {
@@ -24,19 +24,14 @@ struct SynthesizeArguments {
   SynthesizeOptions options;
 };
 
-// Beside the executable, where it is installed, or where it was built.
 const SynthesisPlugin& load_plugin() {
-  namespace fs = std::filesystem;
-  std::error_code none;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
-  for (const fs::path& folder :
-       {bin, bin / ".." / "lib" / "sketchsplat", fs::path(SKETCHSPLAT_SYNTHESIS_FOLDER)}) {
-    void* library = ::dlopen((folder / kSynthesisPluginFile).c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!library) continue;
-    using Get = const SynthesisPlugin*();
-    return *reinterpret_cast<Get*>(::dlsym(library, kSynthesisPluginSymbol))();
-  }
-  throw std::runtime_error(std::string(kSynthesisPluginFile) + " cannot be loaded: " + ::dlerror());
+  const std::string path = synthesis_plugin_path();
+  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library)
+    throw std::runtime_error(std::string(kSynthesisPluginFile) + " cannot be loaded: " +
+                             ::dlerror());
+  using Get = const SynthesisPlugin*();
+  return *reinterpret_cast<Get*>(::dlsym(library, kSynthesisPluginSymbol))();
 }
 
 // The user's NAME=VALUE lines for this part.
@@ -150,6 +145,10 @@ void list_part_fields(SynthesizeArguments* a, Fields* f) {
 }
 
 }  // namespace
+
+std::string synthesis_plugin_path() {
+  return plugin_path(kSynthesisPluginFile, SKETCHSPLAT_SYNTHESIS_FOLDER);
+}
 
 Verb synthesize_verb() {
   const auto arguments = std::make_shared<SynthesizeArguments>();
