@@ -45,7 +45,8 @@ void list_link(LinkOptions* o, Fields* f) {
 
 void list_segment(SegmentOptions* o, Fields* f) {
   f->group("Cutting into curves");
-  f->add("segment-tolerance", &o->tolerance, "px", 0.05, 20, "Points keep this near to a curve");
+  f->add("segment-sigma", &o->sigma, "px", 0.02, 20, "Standard deviation of lifted points");
+  f->add("price", &o->price, "nat", 0, 100, "Of a parameter, when curves are chosen");
   f->add("segment-corner", &o->corner_deg, "deg", 1, 180, "Turn that ends a curve");
 }
 
