@@ -145,6 +145,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_link(&o->link, f);
   list_segment(&o->segment, f);
   f->group("Kinds of strokes");
+  f->add("joint-sigma", &o->rechain.sigma_px, "px", 0.01, 10,
+         "Least standard deviation of what all views say of a place");
   f->add("kind-keep", &o->kinds.keep, "", 0, 2, "Share of its edgels a simpler curve must explain");
   list_select(&o->select, f);
   list_extent(&o->extent, f);

@@ -137,6 +137,12 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
   return polish(fit_extents(sketch, world, options.extent), world, early(options));
 }
 
+// Chains of strokes in as few words as their edgels allow.
+Sketch rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
+  const Rechained r = rechain(sketch, world, options.segment, options.rechain);
+  return r.changes > 0 ? polish(r.sketch, world, early(options)) : sketch;
+}
+
 }  // namespace
 
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
@@ -150,7 +156,7 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
   report->counts.push_back({"strokes_lifted", double(first.size())});
   stage.result(std::to_string(chosen.size()) + " of " + std::to_string(first.size()) +
                " strokes stand");
-  return grown(chosen, world, options);
+  return rewritten(grown(chosen, world, options), world, options);
 }
 
 Round run_round(const Sketch& sketch, const EdgeWorld& world,
@@ -169,9 +175,9 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
     const Simplified simpler = simplify(moved.sketch, topology);
     for (const auto& [name, count] : simpler.counts.named()) row.push_back({name, double(count)});
     round.changed = simpler.counts.total() > 0;
-    const Selection chosen =
-        select_strokes(grown(simpler.sketch, world, options), world, options.select);
-    note_verdicts(simpler.sketch, chosen, progress);
+    const Sketch written = rewritten(grown(simpler.sketch, world, options), world, options);
+    const Selection chosen = select_strokes(written, world, options.select);
+    note_verdicts(written, chosen, progress);
     row.push_back({"unexplaining", double(chosen.changes)});
     round.changed |= chosen.changes > 0;
     round.sketch = chosen.sketch;

@@ -19,8 +19,8 @@ struct SegmentOptions {
 
 /// Parameters of a curve that goes on from the one before it: where it ends and how it bends.
 constexpr int num_parameters(StrokeKind kind) {
-  return kind == StrokeKind::kLine     ? 2
-         : kind == StrokeKind::kArc    ? 4
+  return kind == StrokeKind::kLine     ? 3
+         : kind == StrokeKind::kArc    ? 5
          : kind == StrokeKind::kCircle ? 6
                                        : 8;
 }
