@@ -10,6 +10,7 @@
 #include "edges/lift.h"
 #include "edges/link.h"
 #include "edges/match.h"
+#include "pipelines/close_graph.h"
 #include "pipelines/extent.h"
 #include "pipelines/fields.h"
 #include "pipelines/kinds.h"
@@ -49,6 +50,7 @@ struct ReconstructOptions {
   TopologyOptions topology;
   PolishOptions polish;
   RechainOptions rechain;
+  CloseOptions close;
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too

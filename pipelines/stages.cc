@@ -191,13 +191,17 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
-  Sketch out = options.final_polish ? polish(sketch, world, options.polish) : sketch;
+  const Closed closed = close_graph(sketch, world, options.close);
+  Sketch out = options.final_polish ? polish(closed.sketch, world, options.polish) : closed.sketch;
   MatchOptions match;
   match.reach_px = 1.0;
   const Observation o =
       observe(out, world, match, options.polish.spacing_px, options.select.min_views);
   record_evidence(o, &out);
   report->counts.push_back({"strokes", double(out.size())});
+  report->counts.push_back({"ends_joined", double(closed.joined)});
+  report->counts.push_back({"lines_bridged", double(closed.bridged)});
+  report->counts.push_back({"arcs_rounded", double(closed.rounded)});
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
   stage.result(std::to_string(out.size()) + " strokes");
   return out;
