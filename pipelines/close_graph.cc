@@ -75,7 +75,6 @@ class Graph {
   struct Meeting {
     int stroke = -1;
     double along = 0;  // [px] that the end goes on
-    double t = 0;      // of the other stroke
     Vector3d place;
   };
 
@@ -99,6 +98,7 @@ class Graph {
     return s_.add_stroke(kind, begin, end, handles, evidence);
   }
   bool bridge(int a, bool a_end, int b, bool b_end);
+  ControlPoints reaching(int stroke, const std::vector<int>& degree) const;
   Meeting first_meeting(int stroke, bool at_end) const;
   void meet(int stroke, bool at_end, const Meeting& meeting);
   void move_end(int stroke, bool at_end, const Vector3d& place);
@@ -192,6 +192,16 @@ void Graph::bridge_lines() {
   }
 }
 
+// A stroke that goes on beyond its loose ends, too.
+ControlPoints Graph::reaching(int stroke, const std::vector<int>& degree) const {
+  const Stroke& s = s_.strokes[stroke];
+  const ControlPoints c = control_points(s_, stroke);
+  if (is_closed(s.kind) || s.kind == StrokeKind::kBezier) return c;
+  const double length = stroke_length(s_, stroke);
+  const double more = std::min(px(options_.reach_px) / length, 0.5);
+  return subcurve(s.kind, c, degree[s.begin] == 1 ? -more : 0, degree[s.end] == 1 ? 1 + more : 1);
+}
+
 // Where a loose end, going on along its curve or back, first meets another stroke.
 Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
   Meeting best;
@@ -204,9 +214,10 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
                            : std::min(px(options_.reach_px), 0.5 * length);
   const ControlPoints curve = control_points(s_, stroke);
   const int steps = int((ahead + back) / px(kStepPx));
+  const std::vector<int> degree = degrees();
   for (int other = 0; other < s_.size(); ++other) {
     if (other == stroke || !alive_[other]) continue;
-    const ControlPoints c = control_points(s_, other);
+    const ControlPoints c = reaching(other, degree);
     const auto miss = [&](double along, Vector3d* place, Vector3d* way) {
       const double t = at_end ? 1 + along / length : -along / length;
       evaluate_curve<double>(own.kind, curve.p.data(), t, place, way);
@@ -224,7 +235,7 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
       const double cosine = std::abs(way.normalized().dot(tangent.normalized()));
       if (cosine > std::cos(options_.least_deg * M_PI / 180)) continue;
       least = q.distance;
-      here = {other, along / world_.footprint, q.t, q.position};
+      here = {other, along / world_.footprint, q.position};
     }
     if (here.stroke >= 0 && (best.stroke < 0 || std::abs(here.along) < std::abs(best.along)))
       best = here;
@@ -269,14 +280,21 @@ void Graph::meet(int stroke, bool at_end, const Meeting& m) {
   const Stroke& other = s_.strokes[m.stroke];
   if (is_closed(other.kind)) return;  // it has no node; the end lies on it
   const double length = stroke_length(s_, m.stroke);
-  const double near = std::min(px(options_.reach_px) / 2, length / 3);
-  for (bool end : {false, true}) {
-    const int node = node_of(m.stroke, end);
-    if ((s_.nodes.col(node) - m.place).norm() > near) continue;
+  const double near = std::min(px(options_.reach_px), length / 3);
+  const bool at_far_end = (s_.nodes.col(other.end) - m.place).norm() <
+                          (s_.nodes.col(other.begin) - m.place).norm();
+  const int node = at_far_end ? other.end : other.begin;
+  const bool loose = degrees()[node] == 1;
+  const ClosestPoint on = distance_to_stroke(s_, m.stroke, m.place);
+  // A loose end follows; one where others meet is not moved by this one.
+  const bool beyond = on.t < 1e-6 || on.t > 1 - 1e-6;
+  if (beyond || (s_.nodes.col(node) - m.place).norm() <= (loose ? near : near / 2)) {
+    if (loose) move_end(m.stroke, at_far_end, m.place);
+    else move_end(stroke, at_end, s_.nodes.col(node));
     set_node(stroke, at_end, node);
     return;
   }
-  set_node(stroke, at_end, split(m.stroke, m.t));
+  set_node(stroke, at_end, split(m.stroke, on.t));
 }
 
 void Graph::join_ends() {
