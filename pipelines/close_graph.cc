@@ -280,7 +280,7 @@ void Graph::meet(int stroke, bool at_end, const Meeting& m) {
   const Stroke& other = s_.strokes[m.stroke];
   if (is_closed(other.kind)) return;  // it has no node; the end lies on it
   const double length = stroke_length(s_, m.stroke);
-  const double near = std::min(px(options_.reach_px), length / 3);
+  const double reach = px(options_.reach_px);
   const bool at_far_end = (s_.nodes.col(other.end) - m.place).norm() <
                           (s_.nodes.col(other.begin) - m.place).norm();
   const int node = at_far_end ? other.end : other.begin;
@@ -288,12 +288,14 @@ void Graph::meet(int stroke, bool at_end, const Meeting& m) {
   const ClosestPoint on = distance_to_stroke(s_, m.stroke, m.place);
   // A loose end follows; one where others meet is not moved by this one.
   const bool beyond = on.t < 1e-6 || on.t > 1 - 1e-6;
-  if (beyond || (s_.nodes.col(node) - m.place).norm() <= (loose ? near : near / 2)) {
+  if (beyond || (s_.nodes.col(node) - m.place).norm() <= (loose ? std::min(1.5 * reach, 0.4 * length)
+                                                         : std::min(reach / 2, length / 6))) {
     if (loose) move_end(m.stroke, at_far_end, m.place);
     else move_end(stroke, at_end, s_.nodes.col(node));
     set_node(stroke, at_end, node);
     return;
   }
+  if (stroke_length(s_, stroke) < 2 * reach) return;  // too short to cut another one
   set_node(stroke, at_end, split(m.stroke, on.t));
 }
 
