@@ -114,7 +114,8 @@ Side fit_side(const GeometryFields& f, const Place& p, int sign) {
     side.normal = mean.head<3>().transpose();
     side.inverse = mean(3);
     slopes_of_normal(f, p, &side);
-    side.inverse -= side.inverse_s * A(0, 1) / side.samples + side.inverse_t * A(0, 2) / side.samples;
+    side.inverse -=
+        side.inverse_s * A(0, 1) / side.samples + side.inverse_t * A(0, 2) / side.samples;
   }
   side.normal.normalize();
   return side;
