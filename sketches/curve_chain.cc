@@ -99,8 +99,8 @@ std::vector<CurveChain> curve_chains(const Sketch& sketch, const std::vector<boo
   Walker walker{sketch, cubic_joints(sketch, alone), std::vector<bool>(sketch.size())};
   for (int n = 0; n < int(walker.joints.size()); ++n) {
     std::vector<CubicEnd>& ends = walker.joints[n];
-    if (!ends.empty() && turn_cosine(leg(sketch, ends[0], n), leg(sketch, ends[1], n)) <
-                             cosine(kSmoothDeg))
+    if (!ends.empty() &&
+        turn_cosine(leg(sketch, ends[0], n), leg(sketch, ends[1], n)) < cosine(kSmoothDeg))
       ends.clear();
   }
   std::vector<CurveChain> out;

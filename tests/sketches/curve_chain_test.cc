@@ -23,7 +23,8 @@ struct Wave {
     for (int i = 0; i < 4; ++i) node[i] = sketch.add_node(p[i]);
     node[4] = sketch.add_node({6, 3, 4});
     const double length[4] = {0.5, 0.8, 1.1, 0.4};
-    const Eigen::AngleAxisd turn(turn_deg * M_PI / 180, Vector3d(0.5, 1, 0).cross(t[1]).normalized());
+    const Eigen::AngleAxisd turn(turn_deg * M_PI / 180,
+                                 Vector3d(0.5, 1, 0).cross(t[1]).normalized());
     const Vector3d before = p[1] - 0.3 * t[1].normalized();
     sketch.add_stroke(StrokeKind::kBezier, node[0], node[1], {p[0] + length[0] * t[0], before});
     sketch.add_stroke(StrokeKind::kBezier, node[2], node[1],
@@ -112,7 +113,8 @@ TEST(CurveChain, DoubleKnotsAndTheHandlesAloneGiveTheSameCurve) {
   const std::vector<double> h = span_intervals(p);
   ASSERT_EQ(h.size(), 3u);
   for (int j = 1; j < 3; ++j) {
-    const Vector3d joint = (h[j] * p.col(3 * j - 1) + h[j - 1] * p.col(3 * j + 1)) / (h[j] + h[j - 1]);
+    const Vector3d joint =
+        (h[j] * p.col(3 * j - 1) + h[j - 1] * p.col(3 * j + 1)) / (h[j] + h[j - 1]);
     EXPECT_NEAR((joint - p.col(3 * j)).norm(), 0, 1e-12);
     const Vector3d left = (p.col(3 * j) - p.col(3 * j - 1)) / h[j - 1];
     const Vector3d right = (p.col(3 * j + 1) - p.col(3 * j)) / h[j];
