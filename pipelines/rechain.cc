@@ -152,10 +152,14 @@ ChainRun run_of(const Sketch& sketch, const Observation& o, const Chain& chain, 
     const Measured m = measure(o, link, footprint);
     points.insert(points.end(), m.point.begin(), m.point.end());
     tangents.insert(tangents.end(), m.tangent.begin(), m.tangent.end());
-    run.cost += description_length(
-        Eigen::Map<const Eigen::VectorXd>(m.distance.data(), m.distance.size()), sigma,
-        sketch.strokes[link.stroke].kind, options);
+    run.cost +=
+        description_length(Eigen::Map<const Eigen::VectorXd>(m.distance.data(), m.distance.size()),
+                           sigma, sketch.strokes[link.stroke].kind, options);
   }
+  for (size_t k = 0; k + 1 < chain.links.size(); ++k)
+    if (sketch.strokes[chain.links[k].stroke].kind == StrokeKind::kBezier &&
+        sketch.strokes[chain.links[k + 1].stroke].kind == StrokeKind::kBezier)
+      run.cost -= smooth_saving(options);
   run.point.resize(3, points.size());
   run.tangent.resize(3, points.size());
   for (size_t i = 0; i < points.size(); ++i)
@@ -166,8 +170,8 @@ ChainRun run_of(const Sketch& sketch, const Observation& o, const Chain& chain, 
 // The pieces that say the same in fewer words; empty if there are none.
 std::vector<RunPiece> shorter(const Sketch& sketch, const Observation& o, const Chain& chain,
                               double sigma, double footprint, const SegmentOptions& options) {
-  const bool plain = chain.links.size() == 1 &&
-                     sketch.strokes[chain.links[0].stroke].kind == StrokeKind::kLine;
+  const bool plain =
+      chain.links.size() == 1 && sketch.strokes[chain.links[0].stroke].kind == StrokeKind::kLine;
   if (plain) return {};
   const ChainRun run = run_of(sketch, o, chain, sigma, footprint, options);
   if (run.point.cols() < 2 * options.min_points) return {};

@@ -2,6 +2,7 @@
 #include "sketches/segment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sketches/curve.h"
@@ -25,20 +26,11 @@ class Cutter {
 
   // The curve of shortest description for points [a, b).
   RunPiece best(int a, int b, bool closed) const {
-    const Matrix3Xd p = p_.middleCols(a, b - a), t = t_.middleCols(a, b - a);
-    RunPiece out;
-    out.first = a, out.last = b, out.cost = kHopeless;
-    const auto consider = [&](RunFit&& fit) {
-      if (!fit.ok()) return;
-      const double cost = description_length(fit.distance, sigma_, fit.kind, options_);
-      if (cost < out.cost) out.cost = cost, out.fit = std::move(fit);
-    };
-    if (!closed) consider(line_through(p));
-    // Not worth a look if the parameters alone cost more.
-    if (b - a >= 5 && out.cost > price(StrokeKind::kArc))
-      consider(arc_through(p, t, closed, kClosing * unit_));
-    if (b - a >= 6 && !closed && out.cost > price(StrokeKind::kBezier)) consider(cubic_through(p));
-    if (closed && out.cost > price(StrokeKind::kEllipse)) consider(ellipse_through(p));
+    RunPiece out = plain(a, b, closed);
+    if (!closed && out.cost > price(StrokeKind::kBezier)) {
+      RunPiece other = cubic(a, b);
+      if (other.cost < out.cost) out = std::move(other);
+    }
     return out;
   }
 
@@ -54,31 +46,83 @@ class Cutter {
 
  private:
   double price(StrokeKind kind) const { return options_.price * num_parameters(kind); }
+  double saving() const { return smooth_saving(options_); }
 
-  // Shortest description over all ways to cut [a, b) at the candidates.
+  void consider(RunFit&& fit, RunPiece* out) const {
+    if (!fit.ok()) return;
+    const double cost = description_length(fit.distance, sigma_, fit.kind, options_);
+    if (cost < out->cost) out->cost = cost, out->fit = std::move(fit);
+  }
+
+  // All but cubics.
+  RunPiece plain(int a, int b, bool closed) const {
+    const Matrix3Xd p = p_.middleCols(a, b - a), t = t_.middleCols(a, b - a);
+    RunPiece out;
+    out.first = a, out.last = b, out.cost = kHopeless;
+    if (!closed) consider(line_through(p), &out);
+    // Not worth a look if the parameters alone cost more.
+    if (b - a >= 5 && out.cost > price(StrokeKind::kArc))
+      consider(arc_through(p, t, closed, kClosing * unit_), &out);
+    if (closed && out.cost > price(StrokeKind::kEllipse)) consider(ellipse_through(p), &out);
+    return out;
+  }
+
+  RunPiece cubic(int a, int b) const {
+    RunPiece out;
+    out.first = a, out.last = b, out.cost = kHopeless;
+    if (b - a >= 6) consider(cubic_through(p_.middleCols(a, b - a)), &out);
+    return out;
+  }
+
+  // Shortest description over all ways to cut [a, b) at the candidates. A cubic after a cubic goes
+  // on smoothly, so ways that end with one and ways that do not are followed apart.
   std::vector<RunPiece> program(int a, int b) const {
     const int step = std::max(1, (b - a + kMostCuts - 1) / kMostCuts);
     std::vector<int> at;
     for (int k = a; k <= b - options_.min_points; k += step) at.push_back(k);
     at.push_back(b);
     const int n = int(at.size());
-    std::vector<double> least(n, 1e300);
-    std::vector<int> from(n, 0);
-    std::vector<RunPiece> last(n);
-    least[0] = 0;
+    struct Way {
+      double cost = 1e300;
+      int from = 0, from_kind = 0;
+      RunPiece last;
+    };
+    std::vector<std::array<Way, 2>> ways(n);  // [0]: no cubic at the end, or nothing yet
+    ways[0][0].cost = 0;
+    const auto extend = [&](int i, int j, int kind, RunPiece&& piece) {
+      for (int before = 0; before < 2; ++before) {
+        const double cost = piece.cost - (before == 1 && kind == 1 ? saving() : 0);
+        const double sum = ways[i][before].cost + cost;
+        if (!(sum < ways[j][kind].cost)) continue;
+        ways[j][kind] = {sum, i, before, piece};
+        ways[j][kind].last.cost = cost;
+      }
+    };
     for (int j = 1; j < n; ++j)
       for (int i = j - 1; i >= 0; --i) {
         // Neighbours share the point between them.
         const int end = std::min(b, at[j] + (j + 1 < n ? 1 : 0));
-        if (end - at[i] < options_.min_points || !(least[i] < least[j])) continue;
-        RunPiece piece = best(at[i], end, false);
-        const double sum = least[i] + piece.cost;
-        if (sum < least[j]) least[j] = sum, from[j] = i, last[j] = std::move(piece);
+        const double before = std::min(ways[i][0].cost, ways[i][1].cost);
+        const double now = std::min(ways[j][0].cost, ways[j][1].cost);
+        if (end - at[i] < options_.min_points || before - saving() >= now) continue;
+        RunPiece piece = plain(at[i], end, false);
+        if (piece.cost > price(StrokeKind::kBezier) - saving()) extend(i, j, 1, cubic(at[i], end));
+        extend(i, j, 0, std::move(piece));
       }
     std::vector<RunPiece> out;
-    for (int j = n - 1; j > 0; j = from[j]) out.push_back(last[j]);
+    int kind = ways[n - 1][1].cost < ways[n - 1][0].cost;
+    for (int j = n - 1; j > 0;) {
+      const Way& way = ways[j][kind];
+      out.push_back(way.last);
+      j = way.from, kind = way.from_kind;
+    }
     std::reverse(out.begin(), out.end());
     return out;
+  }
+
+  // The same kind of curve for points [a, b), or for no cubic the best of the others.
+  RunPiece again(const RunPiece& piece, int a, int b) const {
+    return piece.fit.kind == StrokeKind::kBezier ? cubic(a, b) : plain(a, b, false);
   }
 
   // Moves every cut to where its two curves cost least.
@@ -91,11 +135,17 @@ class Cutter {
             const int cut = y.first + way;
             if (cut + 1 - x.first < options_.min_points || y.last - cut < options_.min_points)
               break;
-            RunPiece u = best(x.first, cut + 1, false), v = best(cut, y.last, false);
+            RunPiece u = again(x, x.first, cut + 1), v = again(y, cut, y.last);
+            if (follows(x, y)) v.cost -= saving();
+            if (k > 0 && follows((*pieces)[k - 1], x)) u.cost -= saving();
             if (!(u.cost + v.cost < x.cost + y.cost - 1e-9)) break;
             x = std::move(u), y = std::move(v);
           }
     }
+  }
+
+  static bool follows(const RunPiece& x, const RunPiece& y) {
+    return x.fit.kind == StrokeKind::kBezier && y.fit.kind == StrokeKind::kBezier;
   }
 
   const Matrix3Xd& p_;
@@ -134,6 +184,8 @@ double description_length(const Eigen::VectorXd& distance, double sigma, StrokeK
   const auto nats = (distance.array() / sigma).square() / 2;
   return nats.min(kOutlier).sum() + options.price * num_parameters(kind);
 }
+
+double smooth_saving(const SegmentOptions& options) { return 2 * options.price; }
 
 std::vector<RunPiece> cut_run(const Matrix3Xd& points, const Matrix3Xd& tangents, bool closed,
                               double sigma, double unit, const SegmentOptions& options) {

@@ -30,11 +30,14 @@ constexpr int num_parameters(StrokeKind kind) {
 double description_length(const Eigen::VectorXd& distance, double sigma, StrokeKind kind,
                           const SegmentOptions& options);
 
+/// What a cubic after a cubic saves [nat]: it goes on smoothly, so its first tangent is known.
+double smooth_saving(const SegmentOptions& options);
+
 /// Points [first, last) of a run and their curve.
 struct RunPiece {
   int first = 0, last = 0;
   RunFit fit;
-  double cost = 0;  ///< description length
+  double cost = 0;  ///< description length, less what it saves after its neighbour
 };
 
 /// Cuts an ordered run into the curves whose description is the shortest: lines, arcs, cubics, or

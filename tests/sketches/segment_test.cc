@@ -246,22 +246,50 @@ TEST(CutRun, AHigherPriceNeverBuysMoreCurves) {
   for (double price : {0.5, 2.0, 8.0, 50.0, 1e4}) {
     SegmentOptions options;
     options.price = price;
-    const auto pieces =
-        cut_run(run.points, run.tangents, false, 0.15 * kUnit, kUnit, options);
+    const auto pieces = cut_run(run.points, run.tangents, false, 0.15 * kUnit, kUnit, options);
     EXPECT_LE(pieces.size(), before) << price;
     before = pieces.size();
   }
   EXPECT_EQ(before, 1u);
 }
 
+// Where two cylinders of 1 and 0.8 units meet at right angles.
+Vector3d saddle(double a) {
+  const double y = 0.8 * std::cos(a), z = 0.8 * std::sin(a);
+  return {std::sqrt(1 - y * y), y, z};
+}
+
+TEST(CutRun, ASmoothClosedCurveIsCubicsNotArcsThatMeetInCorners) {
+  Points run;
+  run.add_curve(saddle, 0, 2 * M_PI * 119 / 120, 120);
+  const std::vector<RunPiece> pieces =
+      cut_run(run.points, run.tangents, true, 0.3 * kUnit, kUnit, {});
+  EXPECT_LE(pieces.size(), 5u);
+  for (const RunPiece& piece : pieces) EXPECT_EQ(piece.fit.kind, StrokeKind::kBezier);
+}
+
+TEST(CutRun, ACubicAfterACubicCostsLess) {
+  Points run;
+  run.add_curve(saddle, 0, 2 * M_PI * 119 / 120, 120);
+  const SegmentOptions options;
+  int cheaper = 0;
+  for (const RunPiece& piece :
+       cut_run(run.points, run.tangents, true, 0.15 * kUnit, kUnit, options)) {
+    const double alone =
+        description_length(piece.fit.distance, 0.15 * kUnit, piece.fit.kind, options);
+    EXPECT_TRUE(std::abs(piece.cost - alone) < 1e-9 ||
+                std::abs(piece.cost - alone + smooth_saving(options)) < 1e-9);
+    cheaper += piece.cost < alone - 1e-9;
+  }
+  EXPECT_GE(cheaper, 2);
+}
+
 TEST(CutRun, PiecesFollowOneAnotherAndCoverTheRun) {
   Points run;
   run.add_curve([](double t) { return Vector3d(t, 0, 0); }, 0, 0.5, 30);
   run.add_curve(
-      [](double t) {
-        return Vector3d(0.5 + 0.2 * std::sin(t), 0.2 - 0.2 * std::cos(t), 0);
-      },
-      0.1, 2, 20);
+      [](double t) { return Vector3d(0.5 + 0.2 * std::sin(t), 0.2 - 0.2 * std::cos(t), 0); }, 0.1,
+      2, 20);
   const auto pieces = cut_run(run.points, run.tangents, false, 0.15 * kUnit, kUnit, {});
   ASSERT_EQ(pieces.size(), 2u);
   EXPECT_EQ(pieces[0].first, 0);
