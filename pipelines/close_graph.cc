@@ -19,6 +19,11 @@ constexpr double kStepPx = 0.5;    // along a loose end
 constexpr double kShortestPx = 5;  // strokes shorter than this have no direction to go on in
 constexpr int kFewestSure = 6;     // sightings of a gap that tell something
 
+// Cubics do not say how they go on, and short arcs of ellipses hardly.
+bool is_shy(StrokeKind kind) {
+  return kind == StrokeKind::kBezier || kind == StrokeKind::kEllipticArc;
+}
+
 // Points on a curve between two parameters, two pixels apart, with tangents.
 CurvePoints points_between(StrokeKind kind, const ControlPoints& c, double t0, double t1,
                            double length, double footprint) {
@@ -196,7 +201,7 @@ void Graph::bridge_lines() {
 ControlPoints Graph::reaching(int stroke, const std::vector<int>& degree) const {
   const Stroke& s = s_.strokes[stroke];
   const ControlPoints c = control_points(s_, stroke);
-  if (is_closed(s.kind) || s.kind == StrokeKind::kBezier) return c;
+  if (is_closed(s.kind) || is_shy(s.kind)) return c;
   const double length = stroke_length(s_, stroke);
   const double more = std::min(px(options_.reach_px) / length, 0.5);
   return subcurve(s.kind, c, degree[s.begin] == 1 ? -more : 0, degree[s.end] == 1 ? 1 + more : 1);
@@ -208,8 +213,7 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
   const double length = stroke_length(s_, stroke);
   const double back = std::min(px(options_.reach_px) / 2, length / 4);
   const Stroke& own = s_.strokes[stroke];
-  // Cubics do not say how they go on.
-  const double ahead = own.kind == StrokeKind::kBezier
+  const double ahead = is_shy(own.kind)
                            ? std::min(px(options_.reach_px) / 2, 0.1 * length)
                            : std::min(px(options_.reach_px), 0.5 * length);
   const ControlPoints curve = control_points(s_, stroke);
@@ -243,19 +247,20 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
   return best;
 }
 
-// The stroke follows its end; an arc keeps its circle.
+// The stroke follows its end; an arc keeps its circle or ellipse.
 void Graph::move_end(int stroke, bool at_end, const Vector3d& place) {
   Stroke& own = s_.strokes[stroke];
   const ClosestPoint q = distance_to_stroke(s_, stroke, place);
   double t = q.t;
-  if (own.kind == StrokeKind::kArc) {
+  if (own.kind == StrokeKind::kArc || own.kind == StrokeKind::kEllipticArc) {
     // closest_on_curve stops at the ends: go on by arc length.
-    const double length = stroke_length(s_, stroke);
-    if (at_end && t >= 1) t = 1 + q.distance / length;
-    if (!at_end && t <= 0) t = -q.distance / length;
+    Vector3d p, speed;
+    evaluate_stroke(s_, stroke, at_end ? 1 : 0, &p, &speed);
+    if (at_end && t >= 1) t = 1 + q.distance / speed.norm();
+    if (!at_end && t <= 0) t = -q.distance / speed.norm();
     const ControlPoints c = at_end ? subcurve(own.kind, control_points(s_, stroke), 0, t)
                                    : subcurve(own.kind, control_points(s_, stroke), t, 1);
-    s_.handles.col(own.handle) = c.p[1];
+    for (int h = 0; h < num_handles(own.kind); ++h) s_.handles.col(own.handle + h) = c.p[1 + h];
   }
   s_.nodes.col(node_of(stroke, at_end)) = place;
 }

@@ -84,7 +84,7 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
     const double length_px =
         is_closed(stroke.kind) ? 0 : stroke_length(sketch, s) / world.footprint;
     if (length_px >= options.min_length_px) {
-      const double reach = stroke.kind == StrokeKind::kBezier
+      const double reach = (stroke.kind == StrokeKind::kBezier || stroke.kind == StrokeKind::kEllipticArc)
                                ? std::min(options.outward_px, 0.1 * length_px)
                                : options.outward_px;
       const double before = degree[stroke.begin] == 1 ? reach : 0;

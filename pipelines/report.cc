@@ -45,7 +45,7 @@ Json counts_json(const ReportInput& input) {
   Json counts = object_of(input.reconstruction->report.counts);
   counts["curves"] = sketch.size();
   for (const StrokeKind kind : {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle,
-                                StrokeKind::kEllipse, StrokeKind::kBezier}) {
+                                StrokeKind::kEllipse, StrokeKind::kEllipticArc, StrokeKind::kBezier}) {
     int n = 0;
     for (const Stroke& stroke : sketch.strokes) n += stroke.kind == kind;
     counts[kind_name(kind) + std::string("s")] = n;
@@ -153,7 +153,7 @@ std::string report_html(const std::string& report, const Sketch& sketch,
   data["report"] = Json::parse(report);
   data["kinds"] = Json::array();
   for (const StrokeKind kind : {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle,
-                                StrokeKind::kEllipse, StrokeKind::kBezier})
+                                StrokeKind::kEllipse, StrokeKind::kEllipticArc, StrokeKind::kBezier})
     data["kinds"].push_back({{"name", kind_name(kind)}, {"color", kind_color(kind)}});
   data["curves"] = curves_json(sketch);
   data["overlays"] = Json::array();

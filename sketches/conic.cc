@@ -30,8 +30,35 @@ CircleParameters circle_parameters(const Sketch& sketch, int stroke) {
   return out;
 }
 
-EllipseAxes principal_axes(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+EllipticArcParameters elliptic_arc_parameters(const ControlPoints& c) {
+  const EllipticFrame<double> f = elliptic_frame<double>(c.p[0], c.p[1], c.p[2], c.p[3]);
+  EllipticArcParameters out;
+  out.straight = f.straight;
+  out.centre = out.p = out.q = Eigen::Vector3d::Zero();
+  if (f.straight) return out;
+  out.half_angle = f.half_angle;
+  const double s = std::sin(f.half_angle / 2);
+  out.p = f.rise / (2 * s * s);
+  out.q = f.half_chord / std::sin(f.half_angle);
+  out.centre = f.middle - std::cos(f.half_angle) * out.p;
+  return out;
+}
+
+ControlPoints elliptic_arc(const Eigen::Vector3d& centre, const Eigen::Vector3d& p,
+                           const Eigen::Vector3d& q, double psi0, double psi1) {
+  const auto at = [&](double a) -> Eigen::Vector3d {
+    return centre + std::cos(a) * p + std::sin(a) * q;
+  };
+  ControlPoints out;
+  out.count = 4;
+  out.p[0] = at(psi0), out.p[1] = at((psi0 + psi1) / 2), out.p[3] = at(psi1);
+  out.p[2] = elliptic_quarter(out.p[0], out.p[1], out.p[3], (psi1 - psi0) / 2);
+  return out;
+}
+
+EllipseAxes principal_axes(const Eigen::Vector3d& u, const Eigen::Vector3d& v, double* angle) {
   const double a = 0.5 * std::atan2(2 * u.dot(v), u.squaredNorm() - v.squaredNorm());
+  if (angle) *angle = a;
   return {std::cos(a) * u + std::sin(a) * v, std::cos(a) * v - std::sin(a) * u};
 }
 

@@ -37,6 +37,8 @@ class Cutter {
     // Not worth a look if the parameters alone cost more.
     if (b - a >= 5 && out.cost > price(StrokeKind::kArc))
       consider(arc_through(p, t, closed, kClosing * unit_));
+    if (!closed && out.cost > price(StrokeKind::kEllipticArc))
+      consider(elliptic_arc_through(p, kClosing * unit_));
     if (b - a >= 6 && !closed && out.cost > price(StrokeKind::kBezier)) consider(cubic_through(p));
     if (closed && out.cost > price(StrokeKind::kEllipse)) consider(ellipse_through(p));
     return out;

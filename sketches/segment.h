@@ -22,6 +22,7 @@ constexpr int num_parameters(StrokeKind kind) {
   return kind == StrokeKind::kLine     ? 3
          : kind == StrokeKind::kArc    ? 5
          : kind == StrokeKind::kCircle ? 6
+         : kind == StrokeKind::kEllipticArc ? 7
                                        : 8;
 }
 
@@ -37,10 +38,10 @@ struct RunPiece {
   double cost = 0;  ///< description length
 };
 
-/// Cuts an ordered run into the curves whose description is the shortest: lines, arcs, cubics, or
-/// one circle or ellipse if it is closed (then the pieces begin at a cut, and indices go on from n
-/// to 2 n). Dynamic programming over cuts (Bellman 1961), then each cut alone is moved to where it
-/// is best. `points`, `tangents`: 3 x n, `sigma`: of the points, world units.
+/// Cuts an ordered run into the curves whose description is the shortest: lines, arcs, arcs of
+/// ellipses, cubics, or one circle or ellipse if it is closed (then the pieces begin at a cut, and
+/// indices go on from n to 2 n). Dynamic programming over cuts (Bellman 1961), then each cut alone
+/// is moved to where it is best. `points`, `tangents`: 3 x n, `sigma`: of the points, world units.
 std::vector<RunPiece> cut_run(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tangents,
                               bool closed, double sigma, double unit,
                               const SegmentOptions& options);

@@ -281,6 +281,7 @@ class Drawer {
                                                              {StrokeKind::kArc, "Circle"},
                                                              {StrokeKind::kCircle, "Circle"},
                                                              {StrokeKind::kEllipse, "Ellipse"},
+                                                             {StrokeKind::kEllipticArc, "Ellipse"},
                                                              {StrokeKind::kBezier, "BSpline"}};
     TruthCurve out;
     out.type = kTypes.at(piece.kind);
