@@ -9,6 +9,7 @@
 #include "sketches/closest.h"
 #include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "sketches/ellipse_run.h"
 
 namespace sketchsplat {
 namespace {
@@ -69,6 +70,7 @@ class Graph {
       : s_(sketch), world_(world), options_(options), alive_(sketch.size(), true) {}
 
   void round_arcs();
+  void round_elliptic_arcs();
   void bridge_lines();
   void join_ends();
   Closed finish() {
@@ -102,6 +104,7 @@ class Graph {
     alive_.push_back(true);
     return s_.add_stroke(kind, begin, end, handles, evidence);
   }
+  void round_ellipse(int a, bool a_back, int b, bool b_back);
   bool bridge(int a, bool a_end, int b, bool b_end);
   ControlPoints reaching(int stroke, const std::vector<int>& degree) const;
   Meeting first_meeting(int stroke, bool at_end) const;
@@ -134,6 +137,57 @@ void Graph::round_arcs() {
     add(StrokeKind::kCircle, -1, -1, {c.centre, c.normal * c.radius}, s_.evidence[i]);
     ++result_.rounded;
   }
+}
+
+// Most of an ellipse in one arc, or in two that go on from one another, is all of it.
+void Graph::round_elliptic_arcs() {
+  const std::vector<int> degree = degrees();
+  for (int a = 0; a < s_.size(); ++a)
+    for (int b = a; b < s_.size(); ++b) {
+      const auto is_elliptic = [&](int i) {
+        return is_open(i) && s_.strokes[i].kind == StrokeKind::kEllipticArc;
+      };
+      if (!is_elliptic(a) || !is_elliptic(b)) continue;
+      const Stroke &sa = s_.strokes[a], &sb = s_.strokes[b];
+      if (a == b && (degree[sa.begin] != 1 || degree[sa.end] != 1)) continue;
+      // Two must share one node and nobody else any.
+      const bool a_end = sa.end == sb.begin || sa.end == sb.end;
+      const bool b_end = sb.end == sa.begin || sb.end == sa.end;
+      if (a != b && (node_of(a, a_end) != node_of(b, b_end) || degree[node_of(a, a_end)] != 2 ||
+                     degree[node_of(a, !a_end)] != 1 || degree[node_of(b, !b_end)] != 1))
+        continue;
+      round_ellipse(a, !a_end, b, b_end);
+    }
+}
+
+void Graph::round_ellipse(int a, bool a_back, int b, bool b_back) {
+  constexpr int kPoints = 32;
+  Eigen::Matrix3Xd points(3, a == b ? kPoints : 2 * kPoints - 1);
+  Vector3d d;
+  for (int k = 0; k < points.cols(); ++k) {
+    const double t = double(k % (kPoints - 1)) / (kPoints - 1);
+    const bool first = k < kPoints - 1 || (a == b && k == kPoints - 1);
+    const double u = k == points.cols() - 1 ? 1 : t;
+    Vector3d p;
+    evaluate_stroke(s_, first ? a : b, (first ? a_back : b_back) ? 1 - u : u, &p, &d);
+    points.col(k) = p;
+  }
+  const EllipseRun fit = ellipse_along(points);
+  const double gap = 2 * M_PI - fit.sweep();
+  if (!fit.ok || fit.distance.maxCoeff() > px(1)) return;
+  if (fit.sweep() < options_.least_turn * 2 * M_PI || gap < -0.2) return;
+  if (gap > 0) {
+    ControlPoints rest;
+    rest.p[0] = fit.centre, rest.p[1] = fit.p, rest.p[2] = fit.q;
+    const double t0 = fit.angle[points.cols() - 1] / (2 * M_PI), t1 = t0 + gap / (2 * M_PI);
+    const double length = gap * 0.5 * (fit.p.norm() + fit.q.norm());  // about
+    if (!is_possible(points_between(StrokeKind::kEllipse, rest, t0, t1, length, world_.footprint),
+                     world_, length, options_))
+      return;
+  }
+  alive_[a] = alive_[b] = false;
+  add(StrokeKind::kEllipse, -1, -1, {fit.centre, fit.p, fit.q}, Evidence(s_.evidence[a]));
+  ++result_.rounded;
 }
 
 // Joins two lines through a gap if they are one.
@@ -327,6 +381,7 @@ void Graph::join_ends() {
 Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const CloseOptions& options) {
   Graph graph(sketch, world, options);
   graph.round_arcs();
+  graph.round_elliptic_arcs();
   graph.bridge_lines();
   graph.join_ends();
   return graph.finish();

@@ -25,8 +25,9 @@ struct EllipseRun {
 EllipseRun ellipse_through_runs(const Eigen::Matrix3Xd& points,
                                 const Eigen::VectorXd& weights = {});
 
-/// Of a curve that lies as well on other ellipses: not ok below.
-constexpr double kLeastEllipseSweep = 0.8;  // [rad]
+/// Less of an ellipse lies as well on others; the chord of more is too short to tell the width of
+/// the ellipse and its plane (elliptic arcs know both from it).
+constexpr double kLeastEllipseSweep = 0.8, kMostEllipseSweep = 5.2;  // [rad]
 
 /// The same of one run, whose angle grows; not ok if it turns by less than kLeastEllipseSweep.
 EllipseRun ellipse_along(const Eigen::Matrix3Xd& points);

@@ -173,6 +173,7 @@ RunFit elliptic_arc_through(const Matrix3Xd& p, double closing) {
     out.handles = {fit.centre, fit.p, fit.q};
     return out;
   }
+  if (fit.sweep() > kMostEllipseSweep) return {};
   const ControlPoints c =
       elliptic_arc(fit.centre, fit.p, fit.q, fit.angle[0], fit.angle[fit.angle.size() - 1]);
   out.kind = StrokeKind::kEllipticArc;

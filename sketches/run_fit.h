@@ -32,7 +32,7 @@ RunFit arc_through(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tange
 RunFit cubic_through(const Eigen::Matrix3Xd& points);
 
 /// Elliptic arc, or ellipse if the run leaves a gap of at most `closing` (world units) or 0.2 rad.
-/// At least 10 points that turn by 0.8 rad (see ellipse_along).
+/// At least 10 points that turn by 0.8 to 5.2 rad or all around (see ellipse_along).
 RunFit elliptic_arc_through(const Eigen::Matrix3Xd& points, double closing);
 
 /// Closed; at least 8 points that go around its centre once.

@@ -288,7 +288,7 @@ std::optional<PlainCurve> refit_elliptic_arc(const std::vector<Run>& runs, doubl
     out.p = {fit.centre, fit.p, fit.q, Vector3d::Zero()};
     return if_sound(with_principal_axes(out));
   }
-  if (turn < kLeastEllipseSweep || turn > 6) return std::nullopt;
+  if (turn < kLeastEllipseSweep || turn > kMostEllipseSweep) return std::nullopt;
   out.kind = StrokeKind::kEllipticArc;
   out.p = elliptic_arc(fit.centre, fit.p, fit.q, whole.low, whole.high).p;
   return if_sound(out);
