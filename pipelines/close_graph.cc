@@ -10,6 +10,7 @@
 #include "sketches/conic.h"
 #include "sketches/curve.h"
 #include "sketches/ellipse_run.h"
+#include "sketches/fit.h"
 
 namespace sketchsplat {
 namespace {
@@ -186,8 +187,14 @@ void Graph::round_ellipse(int a, bool a_back, int b, bool b_back) {
       return;
   }
   alive_[a] = alive_[b] = false;
-  add(StrokeKind::kEllipse, -1, -1, {fit.centre, fit.p, fit.q}, Evidence(s_.evidence[a]));
   ++result_.rounded;
+  const CircleFit circle = fit_circle(points);
+  if (circle.success && circle.max_distance < px(0.5)) {
+    add(StrokeKind::kCircle, -1, -1, {circle.centre, circle.normal * circle.radius},
+        Evidence(s_.evidence[a]));
+    return;
+  }
+  add(StrokeKind::kEllipse, -1, -1, {fit.centre, fit.p, fit.q}, Evidence(s_.evidence[a]));
 }
 
 // Joins two lines through a gap if they are one.

@@ -37,7 +37,7 @@ class Cutter {
     // Not worth a look if the parameters alone cost more.
     if (b - a >= 5 && out.cost > price(StrokeKind::kArc))
       consider(arc_through(p, t, closed, kClosing * unit_));
-    if (!closed && out.cost > price(StrokeKind::kEllipticArc))
+    if (!closed && options_.elliptic && out.cost > price(StrokeKind::kEllipticArc))
       consider(elliptic_arc_through(p, kClosing * unit_));
     if (b - a >= 6 && !closed && out.cost > price(StrokeKind::kBezier)) consider(cubic_through(p));
     if (closed && out.cost > price(StrokeKind::kEllipse)) consider(ellipse_through(p));
@@ -157,7 +157,11 @@ std::vector<RunPiece> cut_run(const Matrix3Xd& points, const Matrix3Xd& tangents
 }
 
 void segment_chain(const Matrix3Xd& points, const Matrix3Xd& tangents, bool closed, double unit,
-                   const SegmentOptions& options, Sketch* sketch) {
+                   const SegmentOptions& asked, Sketch* sketch) {
+  // Lifted points scatter: an arc of an ellipse would swallow a line and an arc. Who asks the edgels
+  // later on can tell.
+  SegmentOptions options = asked;
+  options.elliptic = false;
   const int n = int(points.cols());
   std::vector<int> corners;
   for (int i = 0; i + 1 < n; ++i)
