@@ -274,9 +274,8 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
   const double length = stroke_length(s_, stroke);
   const double back = std::min(px(options_.reach_px) / 2, length / 4);
   const Stroke& own = s_.strokes[stroke];
-  const double ahead = is_shy(own.kind)
-                           ? std::min(px(options_.reach_px) / 2, 0.1 * length)
-                           : std::min(px(options_.reach_px), 0.5 * length);
+  const double ahead = is_shy(own.kind) ? std::min(px(options_.reach_px) / 2, 0.1 * length)
+                                        : std::min(px(options_.reach_px), 0.5 * length);
   const ControlPoints curve = control_points(s_, stroke);
   const int steps = int((ahead + back) / px(kStepPx));
   const std::vector<int> degree = degrees();

@@ -10,8 +10,8 @@ struct KindOptions {
 };
 
 /// Gives every open stroke the simplest kind that explains its edgels: cubics and
-/// elliptic arcs are tried as lines and arcs, arcs as lines, each moved onto the edgels by itself before it is compared. End nodes
-/// must belong to one stroke each (topology comes later).
+/// elliptic arcs are tried as lines and arcs, arcs as lines, each moved onto the edgels by itself
+/// before it is compared. End nodes must belong to one stroke each (topology comes later).
 Sketch choose_kinds(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& polish,
                     const KindOptions& options);
 

@@ -102,7 +102,8 @@ double slope(StrokeKind kind, const Vector3d* c, const Vector3d& p, double t, do
 
 // Root of the slope in a bracket around a sampled minimum: Newton, or halving where Newton leaves
 // it.
-double refine_minimum(StrokeKind kind, const Vector3d* c, const Vector3d& p, double low, double high, double t) {
+double refine_minimum(StrokeKind kind, const Vector3d* c, const Vector3d& p, double low,
+                      double high, double t) {
   for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
     double second;
     const double g = slope(kind, c, p, t, &second);

@@ -56,6 +56,28 @@ ControlPoints elliptic_arc(const Eigen::Vector3d& centre, const Eigen::Vector3d&
   return out;
 }
 
+ControlPoints elliptic_arc_between(const ControlPoints& c, const Eigen::Vector3d& begin,
+                                   const Eigen::Vector3d& end) {
+  const EllipticArcParameters e = elliptic_arc_parameters(c);
+  const Eigen::Vector3d normal = e.p.cross(e.q);
+  const double n2 = normal.squaredNorm();
+  const auto angle_near = [&](double psi, const Eigen::Vector3d& x) {
+    const Eigen::Vector3d v = x - e.centre;
+    const double there = std::atan2(e.p.cross(v).dot(normal), v.cross(e.q).dot(normal));
+    return psi + std::remainder(there - psi, 2 * M_PI);
+  };
+  const double psi0 = angle_near(-e.half_angle, begin), psi1 = angle_near(e.half_angle, end);
+  ControlPoints out = c;
+  if (!e.straight && n2 > 0 && psi1 - psi0 > 2e-3 && psi1 - psi0 < 6.2) {
+    out.p[1] = e.at((psi0 + psi1) / 2);
+    out.p[2] = elliptic_quarter(begin, out.p[1], end, (psi1 - psi0) / 2);
+  } else {
+    for (int k : {1, 2}) out.p[k] += (begin - c.p[0] + end - c.p[3]) / 2;
+  }
+  out.p[0] = begin, out.p[3] = end;
+  return out;
+}
+
 EllipseAxes principal_axes(const Eigen::Vector3d& u, const Eigen::Vector3d& v, double* angle) {
   const double a = 0.5 * std::atan2(2 * u.dot(v), u.squaredNorm() - v.squaredNorm());
   if (angle) *angle = a;

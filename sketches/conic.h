@@ -34,6 +34,12 @@ EllipticArcParameters elliptic_arc_parameters(const ControlPoints& control);
 ControlPoints elliptic_arc(const Eigen::Vector3d& centre, const Eigen::Vector3d& p,
                            const Eigen::Vector3d& q, double psi0, double psi1);
 
+/// The arc of the same ellipse between the places nearest in angle to new ends, which are the ends:
+/// best if they lie on the ellipse. One that would vanish or go around is moved along with its ends
+/// instead.
+ControlPoints elliptic_arc_between(const ControlPoints& control, const Eigen::Vector3d& begin,
+                                   const Eigen::Vector3d& end);
+
 /// Principal semi-axes of an ellipse: |major| >= |minor|, perpendicular, major x minor = u x v.
 struct EllipseAxes {
   Eigen::Vector3d major, minor;

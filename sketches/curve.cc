@@ -98,8 +98,8 @@ ControlPoints subcurve(StrokeKind kind, const ControlPoints& curve, double t0, d
   if (kind == StrokeKind::kArc) out.p[1] = at(0.5 * (t0 + t1));
   if (kind == StrokeKind::kEllipticArc) {
     out.p[1] = at(0.5 * (t0 + t1));
-    const EllipticFrame<double> f = elliptic_frame<double>(curve.p[0], curve.p[1], curve.p[2],
-                                                           curve.p[3]);
+    const EllipticFrame<double> f =
+        elliptic_frame<double>(curve.p[0], curve.p[1], curve.p[2], curve.p[3]);
     out.p[2] = elliptic_quarter(out.p[0], out.p[1], out.p[3], f.half_angle * (t1 - t0));
   }
   if (kind == StrokeKind::kBezier) {  // Hermite form of the piece

@@ -173,8 +173,9 @@ void evaluate_curve(StrokeKind kind, const Vec3<T>* c, double t, Vec3<T>* positi
       const T rise = sin(f.half_angle * T(1 - t)) * sin(f.half_angle * T(t)) / (half * half);
       const T sine = sin(f.half_angle);
       *position = f.middle + f.rise * rise + f.half_chord * (sin(psi) / sine);
-      *derivative = (f.half_chord * (cos(psi) / sine) - f.rise * (sin(psi) / (T(2) * half * half))) *
-                    (T(2) * f.half_angle);
+      *derivative =
+          (f.half_chord * (cos(psi) / sine) - f.rise * (sin(psi) / (T(2) * half * half))) *
+          (T(2) * f.half_angle);
       return;
     }
   }

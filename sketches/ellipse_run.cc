@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 
-constexpr double kSlender = 0.05;   // least ratio of the semi-axes
-constexpr double kFar = 50;         // largest semi-axis, times the spread
+constexpr double kSlender = 0.05;  // least ratio of the semi-axes
+constexpr double kFar = 50;        // largest semi-axis, times the spread
 constexpr int kSteps = 12;
 
 // Centre, p and q as columns; points are normalised.
@@ -94,9 +94,9 @@ EllipseRun ellipse_through_runs(const Matrix3Xd& points, const Eigen::VectorXd& 
   Ellipse e;
   e << c.p[0], c.p[1], c.p[2];
   if (!e.allFinite() || !(e.col(1).norm() > 0) || !(e.col(2).norm() > 0)) return out;
-  const Eigen::VectorXd w =
-      weights.size() ? Eigen::VectorXd(weights / weights.mean())
-                     : Eigen::VectorXd(Eigen::VectorXd::Ones(n.points.cols()));
+  const Eigen::VectorXd w = weights.size()
+                                ? Eigen::VectorXd(weights / weights.mean())
+                                : Eigen::VectorXd(Eigen::VectorXd::Ones(n.points.cols()));
   Eigen::VectorXd angle = first_angles(n.points, e), distance(angle.size());
   double cost = project(n.points, w, e, &angle, &distance), lambda = 1e-4;
   for (int k = 0; k < kSteps && lambda < 1e4; ++k) {

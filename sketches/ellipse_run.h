@@ -20,8 +20,8 @@ struct EllipseRun {
 /// `points`: 3 x n in order, neighbours less than half a turn apart; `weights`: n numbers >= 0 or
 /// empty (all 1). Direct fit (Halir and Flusser 1998), then Gauss-Newton on the distances in space
 /// (tangent distance: Wang et al. 2006). Not ok: less than 8 points, no ellipse, one more slender
-/// than 1 : 20 or longer than 50 times the spread of the points. The points may be several runs, one
-/// after the other; then `angle` grows or falls along each.
+/// than 1 : 20 or longer than 50 times the spread of the points. The points may be several runs,
+/// one after the other; then `angle` grows or falls along each.
 EllipseRun ellipse_through_runs(const Eigen::Matrix3Xd& points,
                                 const Eigen::VectorXd& weights = {});
 

@@ -21,11 +21,11 @@ using step::StepFile;
 
 // Of the kinds, in the order of StrokeKind, and of faces: dark grey, blue, green, violet, orange,
 // rose; light grey.
-constexpr double kColour[kNumKinds + 1][3] = {{0.15, 0.15, 0.15}, {0.0, 0.35, 0.85}, {0.0, 0.6, 0.3},
-                                           {0.6, 0.1, 0.7},    {0.9, 0.45, 0.0},  {0.85, 0.1, 0.45},
-                                           {0.8, 0.8, 0.8}};
-constexpr const char* kLayer[kNumKinds + 1] = {"line", "arc", "circle", "ellipse", "spline",
-                                                "elliptic_arc", "face"};
+constexpr double kColour[kNumKinds + 1][3] = {
+    {0.15, 0.15, 0.15}, {0.0, 0.35, 0.85}, {0.0, 0.6, 0.3}, {0.6, 0.1, 0.7},
+    {0.9, 0.45, 0.0},   {0.85, 0.1, 0.45}, {0.8, 0.8, 0.8}};
+constexpr const char* kLayer[kNumKinds + 1] = {"line",   "arc",          "circle", "ellipse",
+                                               "spline", "elliptic_arc", "face"};
 
 // A share of the sketch's extent that no CAD program looks at: arcs flatter than it are lines.
 constexpr double kUncertainty = 1e-7;

@@ -107,7 +107,7 @@ void add_smooth_joints(const RefineSketchOptions& options, Sketch* s, ceres::Pro
   const auto data = [&](SmoothJoint::Column c) {
     return (c.is_node ? s->nodes : s->handles).col(c.index).data();
   };
-  for (const SmoothJoint& joint : smooth_joints(*s, options.smooth_angle)) {
+  for (const SmoothJoint& joint : find_smooth_joints(*s, options.smooth_angle)) {
     double* const blocks[] = {data(joint.before), s->nodes.col(joint.node).data(),
                               data(joint.after)};
     // Not where no edgel says anything.
@@ -120,7 +120,7 @@ void add_smooth_joints(const RefineSketchOptions& options, Sketch* s, ceres::Pro
 
 }  // namespace
 
-std::vector<SmoothJoint> smooth_joints(const Sketch& sketch, double smooth_angle) {
+std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_angle) {
   std::vector<std::vector<std::pair<int, bool>>> ends(sketch.nodes.cols());
   for (int i = 0; i < sketch.size(); ++i)
     if (const Stroke& s = sketch.strokes[i]; !is_closed(s.kind)) {
@@ -128,7 +128,9 @@ std::vector<SmoothJoint> smooth_joints(const Sketch& sketch, double smooth_angle
       ends[s.end].push_back({i, true});
     }
   std::vector<SmoothJoint> joints;
-  const auto plain = [](StrokeKind k) { return k == StrokeKind::kLine || k == StrokeKind::kBezier; };
+  const auto plain = [](StrokeKind k) {
+    return k == StrokeKind::kLine || k == StrokeKind::kBezier;
+  };
   for (int n = 0; n < int(ends.size()); ++n) {
     if (ends[n].size() != 2 || ends[n][0].first == ends[n][1].first) continue;
     const auto [i, i_end] = ends[n][0];

@@ -40,7 +40,7 @@ struct SmoothJoint {
   double angle = 0;  ///< [rad] between the tangents, 0 if they continue one another
 };
 /// All joints that turn by at most `smooth_angle` [rad], see RefineSketchOptions.
-std::vector<SmoothJoint> smooth_joints(const Sketch& sketch, double smooth_angle);
+std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_angle);
 
 /// Moves nodes and handles so that the samples of `layout` reach the least sum of their quadratics.
 /// Strokes that share a node stay joined. What the samples do not determine (an end along its line)

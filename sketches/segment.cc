@@ -158,8 +158,8 @@ std::vector<RunPiece> cut_run(const Matrix3Xd& points, const Matrix3Xd& tangents
 
 void segment_chain(const Matrix3Xd& points, const Matrix3Xd& tangents, bool closed, double unit,
                    const SegmentOptions& asked, Sketch* sketch) {
-  // Lifted points scatter: an arc of an ellipse would swallow a line and an arc. Who asks the edgels
-  // later on can tell.
+  // Lifted points scatter: an arc of an ellipse would swallow a line and an arc. Who asks the
+  // edgels later on can tell.
   SegmentOptions options = asked;
   options.elliptic = false;
   const int n = int(points.cols());

@@ -20,11 +20,11 @@ struct SegmentOptions {
 
 /// Parameters of a curve that goes on from the one before it: where it ends and how it bends.
 constexpr int num_parameters(StrokeKind kind) {
-  return kind == StrokeKind::kLine     ? 3
-         : kind == StrokeKind::kArc    ? 5
-         : kind == StrokeKind::kCircle ? 6
+  return kind == StrokeKind::kLine          ? 3
+         : kind == StrokeKind::kArc         ? 5
+         : kind == StrokeKind::kCircle      ? 6
          : kind == StrokeKind::kEllipticArc ? 7
-                                       : 8;
+                                            : 8;
 }
 
 /// Length of a description [nat]: the points' squared distances from the curve in units of 2
@@ -47,7 +47,8 @@ std::vector<RunPiece> cut_run(const Eigen::Matrix3Xd& points, const Eigen::Matri
                               bool closed, double sigma, double unit,
                               const SegmentOptions& options);
 
-/// Cuts a run of points with tangents at its corners, then each part as cut_run does. Strokes are
+/// Cuts a run of points with tangents at its corners, then each part as cut_run does, but never
+/// into arcs of ellipses: lifted points scatter too much to tell them. Strokes are
 /// appended to `sketch`, with nodes of their own. `unit` is the length that tolerances are measured
 /// in (one pixel at the object), world units.
 void segment_chain(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tangents, bool closed,

@@ -9,6 +9,7 @@
 
 namespace sketchsplat {
 
+// clang-format off
 /// Kinds of curve and the columns of control points that define them:
 ///   line          begin, end
 ///   arc           begin, apex, end           circular, < 360 deg; of apex only what is square to
@@ -18,6 +19,7 @@ namespace sketchsplat {
 ///   bezier        begin, h0, h1, end         cubic
 ///   elliptic_arc  begin, apex, quarter, end  < 360 deg; of quarter only what is along apex - middle
 ///                                            of the chord counts; see EllipticFrame
+// clang-format on
 enum class StrokeKind { kLine, kArc, kCircle, kEllipse, kBezier, kEllipticArc };
 constexpr int kNumKinds = 6;
 

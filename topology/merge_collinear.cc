@@ -177,8 +177,7 @@ double step_between(const Context& c, End x, End y) {
   return -std::min(inside_a * a.samples.length, inside_b * b.samples.length);
 }
 
-std::optional<Merge> continue_curve(const Context& c, End x, End y, double step,
-                                    StrokeKind kind) {
+std::optional<Merge> continue_curve(const Context& c, End x, End y, double step, StrokeKind kind) {
   const Piece &a = c.piece(x.piece), &b = c.piece(y.piece);
   const Run ra = x.at_end ? run_of(a) : reversed(run_of(a));
   const Run rb = y.at_end ? reversed(run_of(b)) : run_of(b);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sketches/conic.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -146,8 +148,11 @@ PlainCurve move_ends(const PlainCurve& curve, const Vector3d& begin, const Vecto
   }
   out.p[0] = begin;
   out.p[curve.size() - 1] = end;
-  if (curve.kind == StrokeKind::kEllipticArc)  // rise and quarter keep their places about the chord
-    for (int k : {1, 2}) out.p[k] += (d0 + d1) / 2;
+  if (curve.kind == StrokeKind::kEllipticArc) {
+    ControlPoints c;
+    c.p = curve.p, c.count = 4;
+    out.p = elliptic_arc_between(c, begin, end).p;
+  }
   if (curve.kind != StrokeKind::kArc) return out;
   // The new apex is where the old circle crosses the plane half way between the new ends.
   out.p[1] = curve.p[1] + (d0 + d1) / 2;

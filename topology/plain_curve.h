@@ -53,8 +53,8 @@ Eigen::Vector3d outward_tangent(const PlainCurve& curve, bool at_end);
 
 /// The open curve with its ends moved and no kink: a cubic is displaced by a linear function of t,
 /// an
-/// elliptic arc sheared in the same way, an arc keeps passing through its own old middle part, a
-/// line is a line.
+/// arc keeps passing through its own old middle part, an elliptic arc keeps its ellipse as far as
+/// the ends allow, a line is a line.
 PlainCurve move_ends(const PlainCurve& curve, const Eigen::Vector3d& begin,
                      const Eigen::Vector3d& end);
 

@@ -210,7 +210,8 @@ TopoDS_Shape cross_drilled(const Dimensions& d) {
 const std::vector<PartMaker>& turned_parts() {
   static const std::vector<PartMaker> parts = {
       {"stepped-shaft", stepped_shaft},
-      {"cut-cylinder", cut_cylinder}, {"ridge-cylinder", ridge_cylinder},
+      {"cut-cylinder", cut_cylinder},
+      {"ridge-cylinder", ridge_cylinder},
       {"frustum", frustum},
       {"hex-nut", hex_nut},
       {"flange", flange},

@@ -120,7 +120,8 @@ TEST_F(CloseGraph, ArcsOfNearlyAnEllipseAreTheEllipseUnlessSomethingEndsThere) {
   const Vector3d centre(0.5, 0.5, 0.5), p(0.3, 0, 0.1), q(0, 0.15, 0);
   const double narrow = 2 * M_PI - 3 * px / 0.3;
   Sketch s;  // in two pieces that share a node, the second one backwards
-  const ControlPoints a = elliptic_arc(centre, p, q, 0, 3), b = elliptic_arc(centre, p, q, 3, narrow);
+  const ControlPoints a = elliptic_arc(centre, p, q, 0, 3),
+                      b = elliptic_arc(centre, p, q, 3, narrow);
   const int begin = s.add_node(a.p[0]), joint = s.add_node(a.p[3]), end = s.add_node(b.p[3]);
   s.add_stroke(StrokeKind::kEllipticArc, begin, joint, {a.p[1], a.p[2]});
   s.add_stroke(StrokeKind::kEllipticArc, end, joint, {b.p[1], b.p[2]});

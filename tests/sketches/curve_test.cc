@@ -235,9 +235,10 @@ TEST(DegenerateCurves, StayFinite) {
       one_stroke(StrokeKind::kEllipse, {o, {0, 0, 0}, {0, 0, 0}}),
       one_stroke(StrokeKind::kEllipse, {o, {1, 0, 0}, {2, 0, 0}}),
       one_stroke(StrokeKind::kEllipticArc, {o, o, o, o}),
-      one_stroke(StrokeKind::kEllipticArc, {o, Vector3d(2, 2, 3), o, o}),             // no chord
-      one_stroke(StrokeKind::kEllipticArc, {o, Vector3d(2, 2, 3), o, {3, 2, 3}}),     // straight
-      one_stroke(StrokeKind::kEllipticArc, {o, {2, 3, 3}, {2, 9, 3}, {3, 2, 3}}),     // quarter far off
+      one_stroke(StrokeKind::kEllipticArc, {o, Vector3d(2, 2, 3), o, o}),          // no chord
+      one_stroke(StrokeKind::kEllipticArc, {o, Vector3d(2, 2, 3), o, {3, 2, 3}}),  // straight
+      one_stroke(StrokeKind::kEllipticArc,
+                 {o, {2, 3, 3}, {2, 9, 3}, {3, 2, 3}}),  // quarter far off
       one_stroke(StrokeKind::kBezier, {o, o, o, o}),
       one_stroke(StrokeKind::kBezier, {o, o, {2, 2, 3}, {2, 2, 3}}),                 // coincident
       one_stroke(StrokeKind::kBezier, {o, {4, 2, 3}, {0, 2, 3}, {2, 2, 3}}),         // collinear

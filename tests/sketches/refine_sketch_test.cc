@@ -90,8 +90,8 @@ TEST(RefineSketch, AnEllipticArcReachesItsEllipse) {
   };
   for (double turn : {1.2, 3.0, 5.0}) {
     const ControlPoints start = elliptic_arc(centre, p, q, -0.2, turn);
-    const Sketch truth =
-        arc_of(elliptic_arc(centre, 1.02 * p + 0.01 * q, 0.97 * q + Vector3d(0, 0, 0.01), -0.2, turn));
+    const Sketch truth = arc_of(
+        elliptic_arc(centre, 1.02 * p + 0.01 * q, 0.97 * q + Vector3d(0, 0, 0.01), -0.2, turn));
     const Matrix3Xd curve = sample_stroke(truth, 0, 1e-3);
     Sketch moved = arc_of(start);
     for (int round = 0; round < 6; ++round) {
@@ -152,14 +152,14 @@ double rms_off_wave(const Sketch& s) {
 
 TEST(RefineSketch, SmoothJointsOfANoisySplineEndBelowADegreeAndCostNothing) {
   const Wave wave;
-  const double degree = M_PI / 180, sigma = 0.02;
+  const double degree = M_PI / 180, sigma = 0.006;
   RefineSketchOptions smooth;
   smooth.smooth_angle = 8 * degree;
   smooth.smooth_weight = std::pow(sigma / (0.2 * degree), 2);
   Sketch with = wave.sketch, without = wave.sketch;
   for (int round = 0; round < 4; ++round)
     for (Sketch* s : {&with, &without}) {
-      const SampleLayout layout = plan_samples(*s, 0.06);
+      const SampleLayout layout = plan_samples(*s, 0.02);
       const Samples now = evaluate_samples(*s, layout);
       *s = refine_sketch(*s, layout, wish(now, noisy_targets(now, sigma)),
                          s == &with ? smooth : RefineSketchOptions())
@@ -167,10 +167,10 @@ TEST(RefineSketch, SmoothJointsOfANoisySplineEndBelowADegreeAndCostNothing) {
     }
   const auto worst = [](const Sketch& s) {
     double angle = 0;
-    for (const SmoothJoint& j : smooth_joints(s, M_PI)) angle = std::max(angle, j.angle);
+    for (const SmoothJoint& j : find_smooth_joints(s, M_PI)) angle = std::max(angle, j.angle);
     return angle;
   };
-  ASSERT_EQ(smooth_joints(with, M_PI).size(), 2u);
+  ASSERT_EQ(find_smooth_joints(with, M_PI).size(), 2u);
   EXPECT_GT(worst(wave.sketch), 2 * degree);
   EXPECT_GT(worst(without), 1 * degree) << "else this test shows nothing";
   EXPECT_LT(worst(with), 1 * degree);
@@ -180,11 +180,11 @@ TEST(RefineSketch, SmoothJointsOfANoisySplineEndBelowADegreeAndCostNothing) {
 TEST(RefineSketch, ACornerIsNoSmoothJoint) {
   Wave wave;
   wave.sketch.handles.col(2) += Vector3d(0, 0, 0.3);  // some 40 deg
-  EXPECT_EQ(smooth_joints(wave.sketch, 8 * M_PI / 180).size(), 1u);
+  EXPECT_EQ(find_smooth_joints(wave.sketch, 8 * M_PI / 180).size(), 1u);
   // Nor is one where a third stroke begins.
   const int n = wave.sketch.add_node({2, 2, 2});
   wave.sketch.add_stroke(StrokeKind::kLine, 2, n, {});
-  EXPECT_EQ(smooth_joints(wave.sketch, 8 * M_PI / 180).size(), 0u);
+  EXPECT_EQ(find_smooth_joints(wave.sketch, 8 * M_PI / 180).size(), 0u);
 }
 
 TEST(RefineSketch, StrokesThatShareANodeStayJoined) {

@@ -12,8 +12,7 @@ const Vector3d kU = 60 * Vector3d(0.8, 0, 0.6), kV = 30 * Vector3d(0, 1, 0);
 
 int add_elliptic(Sketch* s, const Vector3d& u, const Vector3d& v, double from_deg, double to_deg,
                  bool back = false) {
-  const ControlPoints c =
-      elliptic_arc({0, 0, 0}, u, v, from_deg * M_PI / 180, to_deg * M_PI / 180);
+  const ControlPoints c = elliptic_arc({0, 0, 0}, u, v, from_deg * M_PI / 180, to_deg * M_PI / 180);
   const int a = s->add_node(c.p[0]), b = s->add_node(c.p[3]);
   return s->add_stroke(StrokeKind::kEllipticArc, back ? b : a, back ? a : b, {c.p[1], c.p[2]});
 }
