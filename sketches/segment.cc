@@ -13,9 +13,17 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double kOutlier = 8;     // [nat]
+constexpr double kRound = 0.5;     // [unit] what lies nearer to its circle is no ellipse
 constexpr double kClosing = 6;     // [unit] gap that a circle closes
 constexpr int kMostCuts = 24;      // candidates of a run
 constexpr double kHopeless = 1e9;  // [nat] of points that no curve can be fitted to
+
+// Distance that 9 in 10 points keep.
+double ninth_decile(Eigen::VectorXd d) {
+  const Eigen::Index k = std::min(d.size() - 1, d.size() * 9 / 10);
+  std::nth_element(d.data(), d.data() + k, d.data() + d.size());
+  return d[k];
+}
 
 class Cutter {
  public:
@@ -37,7 +45,11 @@ class Cutter {
     // Not worth a look if the parameters alone cost more.
     if (b - a >= 5 && out.cost > price(StrokeKind::kArc))
       consider(arc_through(p, t, closed, kClosing * unit_));
-    if (!closed && options_.elliptic && out.cost > price(StrokeKind::kEllipticArc))
+    // What hides an edge in some views bends it by so much: no reason to take a circle for an
+    // ellipse.
+    const bool round =
+        out.fit.kind != StrokeKind::kLine && ninth_decile(out.fit.distance) < kRound * unit_;
+    if (!closed && !round && options_.elliptic && out.cost > price(StrokeKind::kEllipticArc))
       consider(elliptic_arc_through(p, kClosing * unit_));
     if (b - a >= 6 && !closed && out.cost > price(StrokeKind::kBezier)) consider(cubic_through(p));
     if (closed && out.cost > price(StrokeKind::kEllipse)) consider(ellipse_through(p));
@@ -118,13 +130,6 @@ bool is_corner(const Matrix3Xd& p, const Matrix3Xd& t, int i, int j, const Segme
   const Vector3d a = t.col(i) * (t.col(i).dot(v) < 0 ? -1 : 1);
   const Vector3d b = t.col(j) * (t.col(j).dot(v) < 0 ? -1 : 1);
   return a.dot(b) < std::cos(o.corner_deg * M_PI / 180);
-}
-
-// Distance that 9 in 10 points keep.
-double ninth_decile(Eigen::VectorXd d) {
-  const Eigen::Index k = std::min(d.size() - 1, d.size() * 9 / 10);
-  std::nth_element(d.data(), d.data() + k, d.data() + d.size());
-  return d[k];
 }
 
 constexpr double kFar = 4;  // [sigma] pieces whose points lie farther are no curve
