@@ -13,7 +13,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double kOutlier = 8;     // [nat]
-constexpr double kRound = 0.5;     // [unit] what lies nearer to its circle is no ellipse
+constexpr double kRound = 0.25;    // [unit] what lies nearer to its circle is no ellipse
 constexpr double kClosing = 6;     // [unit] gap that a circle closes
 constexpr int kMostCuts = 24;      // candidates of a run
 constexpr double kHopeless = 1e9;  // [nat] of points that no curve can be fitted to
