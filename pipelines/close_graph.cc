@@ -10,7 +10,6 @@
 #include "sketches/conic.h"
 #include "sketches/curve.h"
 #include "sketches/ellipse_run.h"
-#include "sketches/fit.h"
 
 namespace sketchsplat {
 namespace {
@@ -19,6 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kStepPx = 0.5;    // along a loose end
 constexpr double kShortestPx = 5;  // strokes shorter than this have no direction to go on in
+constexpr double kRoundPx = 0.5;   // between an ellipse and its circle
 constexpr int kFewestSure = 6;     // sightings of a gap that tell something
 
 // Cubics do not say how they go on, and short arcs of ellipses hardly.
@@ -159,6 +159,17 @@ void Graph::round_elliptic_arcs() {
         continue;
       round_ellipse(a, !a_end, b, b_end);
     }
+  // An ellipse that is round to half a pixel is a circle.
+  for (int i = 0; i < s_.size(); ++i) {
+    if (!alive_[i] || s_.strokes[i].kind != StrokeKind::kEllipse) continue;
+    const ControlPoints c = control_points(s_, i);
+    const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
+    const double a = axes.major.norm(), b = axes.minor.norm();
+    if ((a - b) / 2 > px(kRoundPx)) continue;
+    alive_[i] = false;
+    const Vector3d normal = axes.major.cross(axes.minor).normalized();
+    add(StrokeKind::kCircle, -1, -1, {c.p[0], (a + b) / 2 * normal}, Evidence(s_.evidence[i]));
+  }
 }
 
 void Graph::round_ellipse(int a, bool a_back, int b, bool b_back) {
@@ -188,12 +199,6 @@ void Graph::round_ellipse(int a, bool a_back, int b, bool b_back) {
   }
   alive_[a] = alive_[b] = false;
   ++result_.rounded;
-  const CircleFit circle = fit_circle(points);
-  if (circle.success && circle.max_distance < px(0.5)) {
-    add(StrokeKind::kCircle, -1, -1, {circle.centre, circle.normal * circle.radius},
-        Evidence(s_.evidence[a]));
-    return;
-  }
   add(StrokeKind::kEllipse, -1, -1, {fit.centre, fit.p, fit.q}, Evidence(s_.evidence[a]));
 }
 
