@@ -46,12 +46,14 @@ std::string kind_of_edge(const TrueEdge& edge) {
   if (edge.type == "line") return "line";
   const bool closed = ends_meet(edge.polyline);
   if (edge.type == "circle" || edge.type == "arc") return closed ? "circle" : "arc";
-  return edge.type == "ellipse" && closed ? "ellipse" : "bezier";
+  if (edge.type == "ellipse") return closed ? "ellipse" : "elliptic_arc";
+  return "bezier";
 }
 
 int degrees_of_freedom(const std::string& kind) {
   if (kind == "line" || kind == "circle") return 6;
   if (kind == "arc" || kind == "ellipse") return 8;
+  if (kind == "elliptic_arc") return 10;
   return kind == "bezier" ? 12 : 0;
 }
 

@@ -11,12 +11,13 @@
 namespace sketchsplat {
 
 /// What a perfect stroke for this edge would be: "line", "circle" (closed), "arc", "ellipse"
-/// (closed), or "bezier" for everything else (open ellipses, too: there is no such stroke).
+/// (closed), "elliptic_arc", or "bezier" for everything else.
 std::string kind_of_edge(const TrueEdge& edge);
 
 /// Numbers that it takes to tell a curve of this kind by itself: line 6 (two ends), circle 6
 /// (centre, radius, direction of the axis), arc 8 (that and two angles), ellipse 8 (centre, plane,
-/// both axes and their direction), bezier 12. 0 for kinds that are not among these.
+/// both axes and their direction), elliptic_arc 10 (that and two angles), bezier 12. 0 for kinds
+/// that are not among these.
 int degrees_of_freedom(const std::string& kind);
 
 /// Of a polyline: three a vertex.
@@ -27,9 +28,9 @@ inline int degrees_of_freedom_of_polyline(int vertices) { return 3 * vertices; }
 double count_parameters(const std::vector<Eigen::Matrix3Xd>& strokes,
                         const std::vector<StrokeFacts>& facts);
 
-/// The same of the truth, smooth continuations joined. What is neither line, circle, arc nor closed
-/// ellipse counts as the fewest cubics end to end (each half the length of the one that was too
-/// long) that stay within 0.001 of it.
+/// The same of the truth, smooth continuations joined. What is neither line, circle, ellipse nor
+/// an arc of these counts as the fewest cubics end to end (each half the length of the one that was
+/// too long) that stay within 0.001 of it.
 double count_true_parameters(const std::vector<TrueEdge>& edges);
 
 }  // namespace sketchsplat

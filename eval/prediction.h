@@ -10,7 +10,7 @@ namespace sketchsplat {
 /// What a file tells about a stroke beside where it is.
 struct StrokeFacts {
   std::string name;    ///< as the file calls it, or its index
-  std::string kind;    ///< "line", "arc", "circle", "ellipse", "bezier", "polyline"
+  std::string kind;    ///< "line", "arc", "circle", "ellipse", "elliptic_arc", "bezier", "polyline"
   int parameters = 0;  ///< degrees of freedom, see eval/parameters.h
 };
 

@@ -9,6 +9,7 @@
 #include "sketches/closest.h"
 #include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "sketches/ellipse_run.h"
 
 namespace sketchsplat {
 namespace {
@@ -17,7 +18,13 @@ using Eigen::Vector3d;
 
 constexpr double kStepPx = 0.5;    // along a loose end
 constexpr double kShortestPx = 5;  // strokes shorter than this have no direction to go on in
+constexpr double kRoundPx = 0.5;   // between an ellipse and its circle
 constexpr int kFewestSure = 6;     // sightings of a gap that tell something
+
+// Cubics do not say how they go on, and short arcs of ellipses hardly.
+bool is_shy(StrokeKind kind) {
+  return kind == StrokeKind::kBezier || kind == StrokeKind::kEllipticArc;
+}
 
 // Points on a curve between two parameters, two pixels apart, with tangents.
 CurvePoints points_between(StrokeKind kind, const ControlPoints& c, double t0, double t1,
@@ -64,6 +71,7 @@ class Graph {
       : s_(sketch), world_(world), options_(options), alive_(sketch.size(), true) {}
 
   void round_arcs();
+  void round_elliptic_arcs();
   void bridge_lines();
   void join_ends();
   Closed finish() {
@@ -97,6 +105,7 @@ class Graph {
     alive_.push_back(true);
     return s_.add_stroke(kind, begin, end, handles, evidence);
   }
+  void round_ellipse(int a, bool a_back, int b, bool b_back);
   bool bridge(int a, bool a_end, int b, bool b_end);
   ControlPoints reaching(int stroke, const std::vector<int>& degree) const;
   Meeting first_meeting(int stroke, bool at_end) const;
@@ -129,6 +138,68 @@ void Graph::round_arcs() {
     add(StrokeKind::kCircle, -1, -1, {c.centre, c.normal * c.radius}, s_.evidence[i]);
     ++result_.rounded;
   }
+}
+
+// Most of an ellipse in one arc, or in two that go on from one another, is all of it.
+void Graph::round_elliptic_arcs() {
+  const std::vector<int> degree = degrees();
+  for (int a = 0; a < s_.size(); ++a)
+    for (int b = a; b < s_.size(); ++b) {
+      const auto is_elliptic = [&](int i) {
+        return is_open(i) && s_.strokes[i].kind == StrokeKind::kEllipticArc;
+      };
+      if (!is_elliptic(a) || !is_elliptic(b)) continue;
+      const Stroke &sa = s_.strokes[a], &sb = s_.strokes[b];
+      if (a == b && (degree[sa.begin] != 1 || degree[sa.end] != 1)) continue;
+      // Two must share one node and nobody else any.
+      const bool a_end = sa.end == sb.begin || sa.end == sb.end;
+      const bool b_end = sb.end == sa.begin || sb.end == sa.end;
+      if (a != b && (node_of(a, a_end) != node_of(b, b_end) || degree[node_of(a, a_end)] != 2 ||
+                     degree[node_of(a, !a_end)] != 1 || degree[node_of(b, !b_end)] != 1))
+        continue;
+      round_ellipse(a, !a_end, b, b_end);
+    }
+  // An ellipse that is round to half a pixel is a circle.
+  for (int i = 0; i < s_.size(); ++i) {
+    if (!alive_[i] || s_.strokes[i].kind != StrokeKind::kEllipse) continue;
+    const ControlPoints c = control_points(s_, i);
+    const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
+    const double a = axes.major.norm(), b = axes.minor.norm();
+    if ((a - b) / 2 > px(kRoundPx)) continue;
+    alive_[i] = false;
+    const Vector3d normal = axes.major.cross(axes.minor).normalized();
+    add(StrokeKind::kCircle, -1, -1, {c.p[0], (a + b) / 2 * normal}, Evidence(s_.evidence[i]));
+  }
+}
+
+void Graph::round_ellipse(int a, bool a_back, int b, bool b_back) {
+  constexpr int kPoints = 32;
+  Eigen::Matrix3Xd points(3, a == b ? kPoints : 2 * kPoints - 1);
+  Vector3d d;
+  for (int k = 0; k < points.cols(); ++k) {
+    const double t = double(k % (kPoints - 1)) / (kPoints - 1);
+    const bool first = k < kPoints - 1 || (a == b && k == kPoints - 1);
+    const double u = k == points.cols() - 1 ? 1 : t;
+    Vector3d p;
+    evaluate_stroke(s_, first ? a : b, (first ? a_back : b_back) ? 1 - u : u, &p, &d);
+    points.col(k) = p;
+  }
+  const EllipseRun fit = ellipse_along(points);
+  const double gap = 2 * M_PI - fit.sweep();
+  if (!fit.ok || fit.distance.maxCoeff() > px(1)) return;
+  if (fit.sweep() < options_.least_turn * 2 * M_PI || gap < -0.2) return;
+  if (gap > 0) {
+    ControlPoints rest;
+    rest.p[0] = fit.centre, rest.p[1] = fit.p, rest.p[2] = fit.q;
+    const double t0 = fit.angle[points.cols() - 1] / (2 * M_PI), t1 = t0 + gap / (2 * M_PI);
+    const double length = gap * 0.5 * (fit.p.norm() + fit.q.norm());  // about
+    if (!is_possible(points_between(StrokeKind::kEllipse, rest, t0, t1, length, world_.footprint),
+                     world_, length, options_))
+      return;
+  }
+  alive_[a] = alive_[b] = false;
+  ++result_.rounded;
+  add(StrokeKind::kEllipse, -1, -1, {fit.centre, fit.p, fit.q}, Evidence(s_.evidence[a]));
 }
 
 // Joins two lines through a gap if they are one.
@@ -196,7 +267,7 @@ void Graph::bridge_lines() {
 ControlPoints Graph::reaching(int stroke, const std::vector<int>& degree) const {
   const Stroke& s = s_.strokes[stroke];
   const ControlPoints c = control_points(s_, stroke);
-  if (is_closed(s.kind) || s.kind == StrokeKind::kBezier) return c;
+  if (is_closed(s.kind) || is_shy(s.kind)) return c;
   const double length = stroke_length(s_, stroke);
   const double more = std::min(px(options_.reach_px) / length, 0.5);
   return subcurve(s.kind, c, degree[s.begin] == 1 ? -more : 0, degree[s.end] == 1 ? 1 + more : 1);
@@ -208,10 +279,8 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
   const double length = stroke_length(s_, stroke);
   const double back = std::min(px(options_.reach_px) / 2, length / 4);
   const Stroke& own = s_.strokes[stroke];
-  // Cubics do not say how they go on.
-  const double ahead = own.kind == StrokeKind::kBezier
-                           ? std::min(px(options_.reach_px) / 2, 0.1 * length)
-                           : std::min(px(options_.reach_px), 0.5 * length);
+  const double ahead = is_shy(own.kind) ? std::min(px(options_.reach_px) / 2, 0.1 * length)
+                                        : std::min(px(options_.reach_px), 0.5 * length);
   const ControlPoints curve = control_points(s_, stroke);
   const int steps = int((ahead + back) / px(kStepPx));
   const std::vector<int> degree = degrees();
@@ -243,19 +312,20 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
   return best;
 }
 
-// The stroke follows its end; an arc keeps its circle.
+// The stroke follows its end; an arc keeps its circle or ellipse.
 void Graph::move_end(int stroke, bool at_end, const Vector3d& place) {
   Stroke& own = s_.strokes[stroke];
   const ClosestPoint q = distance_to_stroke(s_, stroke, place);
   double t = q.t;
-  if (own.kind == StrokeKind::kArc) {
+  if (own.kind == StrokeKind::kArc || own.kind == StrokeKind::kEllipticArc) {
     // closest_on_curve stops at the ends: go on by arc length.
-    const double length = stroke_length(s_, stroke);
-    if (at_end && t >= 1) t = 1 + q.distance / length;
-    if (!at_end && t <= 0) t = -q.distance / length;
+    Vector3d p, speed;
+    evaluate_stroke(s_, stroke, at_end ? 1 : 0, &p, &speed);
+    if (at_end && t >= 1) t = 1 + q.distance / speed.norm();
+    if (!at_end && t <= 0) t = -q.distance / speed.norm();
     const ControlPoints c = at_end ? subcurve(own.kind, control_points(s_, stroke), 0, t)
                                    : subcurve(own.kind, control_points(s_, stroke), t, 1);
-    s_.handles.col(own.handle) = c.p[1];
+    for (int h = 0; h < num_handles(own.kind); ++h) s_.handles.col(own.handle + h) = c.p[1 + h];
   }
   s_.nodes.col(node_of(stroke, at_end)) = place;
 }
@@ -322,6 +392,7 @@ void Graph::join_ends() {
 Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const CloseOptions& options) {
   Graph graph(sketch, world, options);
   graph.round_arcs();
+  graph.round_elliptic_arcs();
   graph.bridge_lines();
   graph.join_ends();
   return graph.finish();

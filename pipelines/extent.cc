@@ -6,7 +6,9 @@
 
 #include "edges/match.h"
 #include "pipelines/observe.h"
+#include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "sketches/ellipse_run.h"
 
 namespace sketchsplat {
 namespace {
@@ -71,6 +73,16 @@ std::vector<int> node_degrees(const Sketch& sketch) {
   return degree;
 }
 
+// How far either end may be moved outwards, as a share of the length: cubics do not say how they go
+// on, and an elliptic arc must not close up.
+double most_growth(const Sketch& sketch, int stroke) {
+  const StrokeKind kind = sketch.strokes[stroke].kind;
+  if (kind == StrokeKind::kBezier) return 0.1;
+  if (kind != StrokeKind::kEllipticArc) return INFINITY;
+  const double turn = 2 * elliptic_arc_parameters(control_points(sketch, stroke)).half_angle;
+  return turn > 0 ? std::clamp((kMostEllipseSweep / turn - 1) / 2, 0.0, 0.1) : 0.1;
+}
+
 }  // namespace
 
 Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOptions& options) {
@@ -84,9 +96,7 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
     const double length_px =
         is_closed(stroke.kind) ? 0 : stroke_length(sketch, s) / world.footprint;
     if (length_px >= options.min_length_px) {
-      const double reach = stroke.kind == StrokeKind::kBezier
-                               ? std::min(options.outward_px, 0.1 * length_px)
-                               : options.outward_px;
+      const double reach = std::min(options.outward_px, most_growth(sketch, s) * length_px);
       const double before = degree[stroke.begin] == 1 ? reach : 0;
       const double after = degree[stroke.end] == 1 ? reach : 0;
       Run& run = runs[s];

@@ -46,12 +46,12 @@ Sketch choose_kinds(const Sketch& sketch, const EdgeWorld& world,
   std::vector<std::vector<int>> candidates(sketch.size());  // simplest first
   for (int s = 0; s < sketch.size(); ++s) {
     const StrokeKind kind = sketch.strokes[s].kind;
-    if (kind != StrokeKind::kBezier && kind != StrokeKind::kArc) continue;
+    if (kind == StrokeKind::kLine || is_closed(kind)) continue;
     const Eigen::Matrix3Xd points = sample_stroke(sketch, s, 2 * world.footprint);
     if (points.cols() < 3) continue;
     const int before = simpler.size();
     add_line(points, &simpler);
-    if (kind == StrokeKind::kBezier) add_arc(points, &simpler);
+    if (kind != StrokeKind::kArc) add_arc(points, &simpler);
     for (int c = before; c < simpler.size(); ++c) candidates[s].push_back(c);
   }
   if (simpler.size() == 0) return sketch;

@@ -95,6 +95,8 @@ void list_polish(PolishOptions* o, Fields* f) {
   f->add("polish-spacing", &o->spacing_px, "px", 0.25, 50, "Distance of samples on a stroke");
   f->add("polish-reach", &o->reach_px, "px", 0.1, 20, "Largest distance of an edgel at first");
   f->add("polish-final-reach", &o->final_reach_px, "px", 0.1, 20, "And at last");
+  f->add("smooth-joint", &o->smooth_deg, "deg", 0, 45,
+         "Joints of cubics, with one another or lines, that turn less are kept smooth");
 }
 
 void list_detect(DetectOptions* o, Fields* f) {

@@ -90,6 +90,8 @@ std::array<float, 3> kind_color(StrokeKind kind) {
       return {0.58f, 0.20f, 0.92f};
     case StrokeKind::kBezier:
       return {0.09f, 0.64f, 0.29f};
+    case StrokeKind::kEllipticArc:
+      return {0.86f, 0.15f, 0.60f};
   }
   return {0, 0, 0};
 }

@@ -2,6 +2,7 @@
 #include "pipelines/polish.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipelines/observe.h"
 #include "sketches/refine_sketch.h"
@@ -19,8 +20,11 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     match.max_bias = coarse ? 0 : std::max(options.bias_px, 2 * sigma);
     const Observation o = observe(s, world, match, options.spacing_px, 1);
     sigma = o.matches.sigma_px;
+    RefineSketchOptions refine;
+    refine.smooth_angle = options.smooth_deg * M_PI / 180;
+    refine.smooth_weight = std::pow(sigma / (options.smooth_sigma_deg * M_PI / 180), 2);
     const RefineSketchResult refined =
-        refine_sketch(s, o.layout, {o.matches.information, o.matches.slope});
+        refine_sketch(s, o.layout, {o.matches.information, o.matches.slope}, refine);
     const Samples moved = evaluate_samples(refined.sketch, o.layout);
     const double step = (moved.position - o.samples.position).colwise().norm().maxCoeff();
     s = refined.sketch;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipelines/observe.h"
+#include "sketches/conic.h"
 #include "sketches/curve.h"
 
 namespace sketchsplat {
@@ -186,6 +187,17 @@ std::vector<RunPiece> shorter(const Sketch& sketch, const Observation& o, const 
   return pieces;
 }
 
+// Of a fit that is tied to nodes near its ends. The handles of an elliptic arc belong to its ends:
+// it keeps its ellipse.
+std::vector<Vector3d> handles_between(const RunFit& fit, const Vector3d& begin,
+                                      const Vector3d& end) {
+  if (fit.kind != StrokeKind::kEllipticArc) return fit.handles;
+  ControlPoints c;
+  c.p = {fit.begin, fit.handles[0], fit.handles[1], fit.end}, c.count = 4;
+  c = elliptic_arc_between(c, begin, end);
+  return {c.p[1], c.p[2]};
+}
+
 // Copies strokes with their nodes into a new sketch.
 class Rebuilder {
  public:
@@ -221,7 +233,9 @@ class Rebuilder {
       joint[k] = out.add_node(0.5 * (pieces[(k + n - 1) % n].fit.end + pieces[k].fit.begin));
     if (chain.closed) joint[n] = joint[0];
     for (int k = 0; k < n; ++k)
-      out.add_stroke(pieces[k].fit.kind, joint[k], joint[k + 1], pieces[k].fit.handles);
+      out.add_stroke(
+          pieces[k].fit.kind, joint[k], joint[k + 1],
+          handles_between(pieces[k].fit, out.nodes.col(joint[k]), out.nodes.col(joint[k + 1])));
   }
   Sketch out;
 

@@ -44,8 +44,9 @@ Json counts_json(const ReportInput& input) {
   const Sketch& sketch = input.reconstruction->sketch;
   Json counts = object_of(input.reconstruction->report.counts);
   counts["curves"] = sketch.size();
-  for (const StrokeKind kind : {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle,
-                                StrokeKind::kEllipse, StrokeKind::kBezier}) {
+  for (const StrokeKind kind :
+       {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle, StrokeKind::kEllipse,
+        StrokeKind::kEllipticArc, StrokeKind::kBezier}) {
     int n = 0;
     for (const Stroke& stroke : sketch.strokes) n += stroke.kind == kind;
     counts[kind_name(kind) + std::string("s")] = n;
@@ -152,8 +153,9 @@ std::string report_html(const std::string& report, const Sketch& sketch,
   Json data;
   data["report"] = Json::parse(report);
   data["kinds"] = Json::array();
-  for (const StrokeKind kind : {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle,
-                                StrokeKind::kEllipse, StrokeKind::kBezier})
+  for (const StrokeKind kind :
+       {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle, StrokeKind::kEllipse,
+        StrokeKind::kEllipticArc, StrokeKind::kBezier})
     data["kinds"].push_back({{"name", kind_name(kind)}, {"color", kind_color(kind)}});
   data["curves"] = curves_json(sketch);
   data["overlays"] = Json::array();

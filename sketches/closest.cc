@@ -83,20 +83,30 @@ double closest_on_ellipse(const Vector3d* c, const Vector3d& p) {
 }
 
 // Half the derivative of the squared distance, and its own derivative.
-double slope(const Vector3d* c, const Vector3d& p, double t, double* second) {
-  Vector3d x, d;
-  evaluate_curve<double>(StrokeKind::kBezier, c, t, &x, &d);
-  const Vector3d dd = 6 * ((1 - t) * (c[2] - 2 * c[1] + c[0]) + t * (c[3] - 2 * c[2] + c[1]));
+double slope(StrokeKind kind, const Vector3d* c, const Vector3d& p, double t, double* second) {
+  Vector3d x, d, dd;
+  evaluate_curve<double>(kind, c, t, &x, &d);
+  if (kind == StrokeKind::kBezier) {
+    dd = 6 * ((1 - t) * (c[2] - 2 * c[1] + c[0]) + t * (c[3] - 2 * c[2] + c[1]));
+  } else {
+    ControlPoints control;
+    for (int k = 0; k < 4; ++k) control.p[k] = c[k];
+    const EllipticArcParameters e = elliptic_arc_parameters(control);
+    const double turn = 2 * e.half_angle;
+    dd = e.straight ? Vector3d(-8 * (c[1] - (c[0] + c[3]) / 2))
+                    : Vector3d(turn * turn * (e.centre - x));
+  }
   *second = d.squaredNorm() + (x - p).dot(dd);
   return (x - p).dot(d);
 }
 
 // Root of the slope in a bracket around a sampled minimum: Newton, or halving where Newton leaves
 // it.
-double refine_minimum(const Vector3d* c, const Vector3d& p, double low, double high, double t) {
+double refine_minimum(StrokeKind kind, const Vector3d* c, const Vector3d& p, double low,
+                      double high, double t) {
   for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
     double second;
-    const double g = slope(c, p, t, &second);
+    const double g = slope(kind, c, p, t, &second);
     if (g == 0) return t;
     (g < 0 ? low : high) = t;
     const double newton = t - g / second;
@@ -107,12 +117,13 @@ double refine_minimum(const Vector3d* c, const Vector3d& p, double low, double h
   return t;
 }
 
-double closest_on_cubic(const Vector3d* c, const Vector3d& p) {
+// Of a cubic or an elliptic arc.
+double closest_by_search(StrokeKind kind, const Vector3d* c, const Vector3d& p) {
   constexpr int kSamples = 32;
   double d2[kSamples + 1];
   const auto squared_distance = [&](double t) {
     Vector3d x, d;
-    evaluate_curve<double>(StrokeKind::kBezier, c, t, &x, &d);
+    evaluate_curve<double>(kind, c, t, &x, &d);
     return (x - p).squaredNorm();
   };
   for (int i = 0; i <= kSamples; ++i) d2[i] = squared_distance(double(i) / kSamples);
@@ -121,7 +132,7 @@ double closest_on_cubic(const Vector3d* c, const Vector3d& p) {
     if ((i > 0 && d2[i - 1] < d2[i]) || (i < kSamples && d2[i + 1] < d2[i])) continue;
     const double low = std::max(0, i - 1) / double(kSamples);
     const double high = std::min(kSamples, i + 1) / double(kSamples);
-    const double t = refine_minimum(c, p, low, high, double(i) / kSamples);
+    const double t = refine_minimum(kind, c, p, low, high, double(i) / kSamples);
     const double value = squared_distance(t);
     if (value < best_d2) {
       best = t;
@@ -142,9 +153,10 @@ double closest_parameter(StrokeKind kind, const Vector3d* c, const Vector3d& p) 
     case StrokeKind::kEllipse:
       return closest_on_ellipse(c, p);
     case StrokeKind::kBezier:
+    case StrokeKind::kEllipticArc:
       break;
   }
-  return closest_on_cubic(c, p);
+  return closest_by_search(kind, c, p);
 }
 
 }  // namespace

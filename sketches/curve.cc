@@ -59,6 +59,16 @@ constexpr int kPieces = 16;
 
 }  // namespace
 
+Eigen::Vector3d elliptic_quarter(const Eigen::Vector3d& begin, const Eigen::Vector3d& apex,
+                                 const Eigen::Vector3d& end, double half_angle) {
+  const double root = std::tan(std::clamp(half_angle, 1e-3, 3.1) / 4);
+  double tan2 = root * root;  // what elliptic_frame bends into this
+  if (tan2 < kLeastTan2) tan2 = kLeastTan2 * (1 + std::log(tan2 / kLeastTan2));
+  if (tan2 > kMostTan2) tan2 = kMostTan2 - (1 - kMostTan2) * std::log((1 - tan2) / (1 - kMostTan2));
+  const Eigen::Vector3d middle = (begin + end) / 2;
+  return middle + (3 - tan2) / 4 * (apex - middle);
+}
+
 void evaluate_stroke(const Sketch& sketch, int stroke, double t, Eigen::Vector3d* position,
                      Eigen::Vector3d* derivative) {
   const ControlPoints c = control_points(sketch, stroke);
@@ -86,6 +96,12 @@ ControlPoints subcurve(StrokeKind kind, const ControlPoints& curve, double t0, d
   out.p[0] = at(t0);
   out.p[curve.count - 1] = at(t1);
   if (kind == StrokeKind::kArc) out.p[1] = at(0.5 * (t0 + t1));
+  if (kind == StrokeKind::kEllipticArc) {
+    out.p[1] = at(0.5 * (t0 + t1));
+    const EllipticFrame<double> f =
+        elliptic_frame<double>(curve.p[0], curve.p[1], curve.p[2], curve.p[3]);
+    out.p[2] = elliptic_quarter(out.p[0], out.p[1], out.p[3], f.half_angle * (t1 - t0));
+  }
   if (kind == StrokeKind::kBezier) {  // Hermite form of the piece
     Eigen::Vector3d p;
     evaluate_curve<double>(kind, curve.p.data(), t0, &p, &d);

@@ -61,6 +61,49 @@ ArcFrame<T> arc_frame(const Vec3<T>& begin, const Vec3<T>& apex, const Vec3<T>& 
   return f;
 }
 
+/// Arc of an ellipse without its centre. With M the middle of the chord, H = (end - begin) / 2 and
+/// rise R = apex - M (H and R are conjugate directions), psi in [-a, a]:
+///   X(psi) = M + R (cos psi - cos a) / (1 - cos a) + H sin psi / sin a
+/// runs through begin, apex and end whatever a is. The middle of X(a/2) and X(-a/2) is M + g R with
+///   tan^2(a/4) = 3 - 4 g: g = 1/2 is a full turn, 3/4 a parabola,
+/// and the quarter point tells g = (quarter - M).R / R.R. So the curve moves about as far as any of
+/// its control points, and flat arcs are no worse than round ones. Ten of the twelve coordinates
+/// count: what of the quarter point is square to R does not. Any will do: near its bounds and
+/// beyond, tan^2(a/4) is bent into (0, 1).
+template <typename T>
+struct EllipticFrame {
+  Vec3<T> middle, half_chord, rise;
+  T half_angle;   ///< a, in (0, pi) rad
+  bool straight;  ///< rise below 1e-9 of the chord: half_angle means nothing
+};
+/// Between these tan^2(a/4) is 3 - 4 g itself: turns of 32 to 348 deg.
+constexpr double kLeastTan2 = 0.005, kMostTan2 = 0.9;
+template <typename T>
+EllipticFrame<T> elliptic_frame(const Vec3<T>& begin, const Vec3<T>& apex, const Vec3<T>& quarter,
+                                const Vec3<T>& end) {
+  using std::atan;
+  using std::exp;
+  using std::sqrt;
+  EllipticFrame<T> f;
+  f.middle = (begin + end) * T(0.5);
+  f.half_chord = (end - begin) * T(0.5);
+  f.rise = apex - f.middle;
+  f.half_angle = T(0);
+  const T rise2 = f.rise.squaredNorm();
+  f.straight = !(rise2 > T(1e-18) * f.half_chord.squaredNorm()) || !(rise2 > T(1e-290));
+  if (f.straight) return f;
+  T tan2 = T(3) - T(4) * (quarter - f.middle).dot(f.rise) / rise2;
+  if (tan2 < T(kLeastTan2)) {
+    const T past = (T(kLeastTan2) - tan2) / T(kLeastTan2);
+    tan2 = T(kLeastTan2) * exp(-(past < T(12) ? past : T(12)));
+  } else if (tan2 > T(kMostTan2)) {
+    const T past = (tan2 - T(kMostTan2)) / T(1 - kMostTan2);
+    tan2 = T(1) - T(1 - kMostTan2) * exp(-(past < T(4) ? past : T(4)));
+  }
+  f.half_angle = T(4) * atan(sqrt(tan2));
+  return f;
+}
+
 /// Position and derivative by t in [0, 1] of a curve with these control points (order: StrokeKind).
 /// Degenerate controls give finite values: a straight arc is a line, a zero axis is a point.
 template <typename T>
@@ -119,8 +162,29 @@ void evaluate_curve(StrokeKind kind, const Vec3<T>* c, double t, Vec3<T>* positi
       *derivative = (c[2] * T(std::cos(a)) - c[1] * T(std::sin(a))) * T(2 * M_PI);
       return;
     }
+    case StrokeKind::kEllipticArc: {
+      const EllipticFrame<T> f = elliptic_frame<T>(c[0], c[1], c[2], c[3]);
+      if (f.straight) {
+        *position = c[0] * T(1 - t) + c[3] * T(t) + f.rise * T(4 * t * (1 - t));
+        *derivative = c[3] - c[0] + f.rise * T(4 - 8 * t);
+        return;
+      }
+      const T psi = T(2 * t - 1) * f.half_angle, half = sin(f.half_angle * T(0.5));
+      const T rise = sin(f.half_angle * T(1 - t)) * sin(f.half_angle * T(t)) / (half * half);
+      const T sine = sin(f.half_angle);
+      *position = f.middle + f.rise * rise + f.half_chord * (sin(psi) / sine);
+      *derivative =
+          (f.half_chord * (cos(psi) / sine) - f.rise * (sin(psi) / (T(2) * half * half))) *
+          (T(2) * f.half_angle);
+      return;
+    }
   }
 }
+
+/// The quarter point of an elliptic arc that turns by twice this angle [rad] (kept within 2e-3 and
+/// 6.2), on the line from the middle of the chord to the apex.
+Eigen::Vector3d elliptic_quarter(const Eigen::Vector3d& begin, const Eigen::Vector3d& apex,
+                                 const Eigen::Vector3d& end, double half_angle);
 
 /// Arc length of a stroke, to about 1e-9 of it.
 double stroke_length(const Sketch& sketch, int stroke);

@@ -80,7 +80,8 @@ bool direct_ellipse(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Eigen::V
   return best > 0 && axes_of_conic(conic, centre, semi_axes);
 }
 
-// Control points (centre, u, v) to start from; the plane is that of the least spread.
+}  // namespace
+
 bool start_ellipse(const Normalised& n, ControlPoints* c) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(n.points.transpose(), Eigen::ComputeThinV);
   if (!(svd.singularValues()[1] > (1e-8 + 10 * n.resolution) * svd.singularValues()[0]))
@@ -98,8 +99,6 @@ bool start_ellipse(const Normalised& n, ControlPoints* c) {
   c->p[2] = plane * unit.cwiseProduct(axes.col(1));
   return true;
 }
-
-}  // namespace
 
 BezierFit fit_bezier(const Matrix3Xd& points, const std::optional<Vector3d>& begin,
                      const std::optional<Vector3d>& end) {

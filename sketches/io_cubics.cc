@@ -12,7 +12,10 @@ namespace sketchsplat {
 namespace {
 
 double turned_angle(const Sketch& sketch, int stroke) {
-  if (is_closed(sketch.strokes[stroke].kind)) return 2 * M_PI;
+  const StrokeKind kind = sketch.strokes[stroke].kind;
+  if (is_closed(kind)) return 2 * M_PI;
+  if (kind == StrokeKind::kEllipticArc)
+    return 2 * elliptic_arc_parameters(control_points(sketch, stroke)).half_angle;
   return circle_parameters(sketch, stroke).angle;
 }
 
@@ -52,9 +55,9 @@ std::vector<Eigen::Matrix<double, 3, 4>> to_cubics(const Sketch& sketch, int str
     piece << p0, p0 + step * d0, p1 - step * d1, p1;
     pieces.push_back(piece);
   }
-  if (kind == StrokeKind::kArc) {  // the ends are the nodes, to the last bit
+  if (!is_closed(kind)) {  // the ends are the nodes, to the last bit
     pieces.front().col(0) = c.p[0];
-    pieces.back().col(3) = c.p[2];
+    pieces.back().col(3) = c.p[c.count - 1];
   } else {
     pieces.back().col(3) = pieces.front().col(0);
   }

@@ -17,9 +17,10 @@ using Eigen::Vector3d;
 constexpr double kStraight = 1e-7;  // of the extent: arcs flatter than this are lines
 
 // Layers by kind (order: StrokeKind) and their AutoCAD colours: white, blue, green, magenta,
-// orange.
-constexpr const char* kLayer[] = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"};
-constexpr int kColour[] = {7, 5, 3, 6, 30};
+// orange, rose.
+constexpr const char* kLayer[kNumKinds] = {"LINE",    "ARC",    "CIRCLE",
+                                           "ELLIPSE", "SPLINE", "ELLIPTIC_ARC"};
+constexpr int kColour[kNumKinds] = {7, 5, 3, 6, 30, 230};
 
 // Axes that AutoCAD gives to the plane of an extrusion direction.
 void arbitrary_axes(const Vector3d& normal, Vector3d* x, Vector3d* y) {
@@ -111,9 +112,9 @@ void write_tables(DxfFile* file) {
   for (const char* name : {"ByBlock", "ByLayer", "Continuous"})
     entry(file, "LTYPE", "Linetype", name).text(3, "").whole(72, 65).whole(73, 0).real(40, 0);
   file->text(0, "ENDTAB");
-  start_table(file, "LAYER", 6);
+  start_table(file, "LAYER", kNumKinds + 1);
   entry(file, "LAYER", "Layer", "0").whole(62, 7).text(6, "Continuous");
-  for (int k = 0; k < 5; ++k)
+  for (int k = 0; k < kNumKinds; ++k)
     entry(file, "LAYER", "Layer", kLayer[k]).whole(62, kColour[k]).text(6, "Continuous");
   file->text(0, "ENDTAB");
   start_table(file, "STYLE", 1);
@@ -172,11 +173,21 @@ void write_circle(DxfFile* file, StrokeKind kind, const CircleParameters& c,
   file->real(51, std::fmod(degrees(start + c.angle), 360));
 }
 
-void write_ellipse(DxfFile* file, const ControlPoints& c) {
-  const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
-  entity(file, "ELLIPSE", StrokeKind::kEllipse).subclass("Ellipse").point(10, c.p[0]);
+// From angle `first` to `last` about the principal axes [rad].
+void write_ellipse(DxfFile* file, StrokeKind kind, const Vector3d& centre, const EllipseAxes& axes,
+                   double first, double last) {
+  entity(file, "ELLIPSE", kind).subclass("Ellipse").point(10, centre);
   file->point(11, axes.major).vector(210, axes.major.cross(axes.minor).normalized());
-  file->real(40, axes.minor.norm() / axes.major.norm()).real(41, 0).real(42, 2 * M_PI);
+  const double ratio = axes.minor.norm() / axes.major.norm();
+  file->real(40, std::min(ratio, 1.0)).real(41, first).real(42, last);
+}
+
+void write_elliptic_arc(DxfFile* file, const EllipticArcParameters& e) {
+  double shift = 0;
+  const EllipseAxes axes = principal_axes(e.p, e.q, &shift);
+  const auto turn = [](double a) { return a - 2 * M_PI * std::floor(a / (2 * M_PI)); };
+  write_ellipse(file, StrokeKind::kEllipticArc, e.centre, axes, turn(-e.half_angle - shift),
+                turn(e.half_angle - shift));
 }
 
 void write_spline(DxfFile* file, const ControlPoints& c) {
@@ -196,7 +207,13 @@ void write_entity(DxfFile* file, const Sketch& sketch, int i, double straight) {
   if (kind == StrokeKind::kLine) {
     write_line(file, kind, c.p[0], c.p[1]);
   } else if (kind == StrokeKind::kEllipse) {
-    write_ellipse(file, c);
+    write_ellipse(file, kind, c.p[0], principal_axes(c.p[1], c.p[2]), 0, 2 * M_PI);
+  } else if (kind == StrokeKind::kEllipticArc) {
+    const EllipticArcParameters e = elliptic_arc_parameters(c);
+    if (e.straight || (c.p[1] - (c.p[0] + c.p[3]) / 2).norm() <= straight)
+      write_line(file, kind, c.p[0], c.p[3]);
+    else
+      write_elliptic_arc(file, e);
   } else if (kind == StrokeKind::kBezier) {
     write_spline(file, c);
   } else {

@@ -34,6 +34,15 @@ void add_derived(const Sketch& sketch, int i, Json* stroke) {
     (*stroke)["centre"] = json_of(c.p[0]);
     (*stroke)["major"] = json_of(axes.major);
     (*stroke)["minor"] = json_of(axes.minor);
+  } else if (kind == StrokeKind::kEllipticArc) {
+    const EllipticArcParameters e = elliptic_arc_parameters(control_points(sketch, i));
+    if (e.straight) return;
+    double shift = 0;
+    const EllipseAxes axes = principal_axes(e.p, e.q, &shift);
+    (*stroke)["centre"] = json_of(e.centre);
+    (*stroke)["major"] = json_of(axes.major);
+    (*stroke)["minor"] = json_of(axes.minor);
+    (*stroke)["angles"] = {-e.half_angle - shift, e.half_angle - shift};
   }
 }
 
@@ -113,7 +122,7 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
   const Json& name = reader.member(j, "kind", where);
   StrokeKind kind;
   if (!name.is_string() || !parse_kind(name.get<std::string>(), &kind))
-    reader.fail("line, arc, circle, ellipse or bezier as \"kind\" of " + where,
+    reader.fail("line, arc, circle, ellipse, bezier or elliptic_arc as \"kind\" of " + where,
                 Reader::summary(name));
   const Json& nodes = reader.array(j, "nodes", where);
   if (nodes.size() != (is_closed(kind) ? 0u : 2u))

@@ -33,6 +33,12 @@ int num_chords(const Sketch& sketch, int stroke, double deflection) {
       return steps_of_circle(c.p[1].norm(), 2 * M_PI, deflection);
     case StrokeKind::kEllipse:  // an affine image of a circle, stretched by the major semi-axis
       return steps_of_circle(principal_axes(c.p[1], c.p[2]).major.norm(), 2 * M_PI, deflection);
+    case StrokeKind::kEllipticArc: {
+      const EllipticArcParameters e = elliptic_arc_parameters(c);
+      return e.straight ? 1
+                        : steps_of_circle(principal_axes(e.p, e.q).major.norm(), 2 * e.half_angle,
+                                          deflection);
+    }
     case StrokeKind::kBezier:
       break;
   }

@@ -19,12 +19,13 @@ using step::real;
 using step::reference;
 using step::StepFile;
 
-constexpr int kKinds = 5;
-// Of the kinds, in the order of StrokeKind, and of faces: dark grey, blue, green, violet, orange;
-// light grey.
-constexpr double kColour[kKinds + 1][3] = {{0.15, 0.15, 0.15}, {0.0, 0.35, 0.85}, {0.0, 0.6, 0.3},
-                                           {0.6, 0.1, 0.7},    {0.9, 0.45, 0.0},  {0.8, 0.8, 0.8}};
-constexpr const char* kLayer[kKinds + 1] = {"line", "arc", "circle", "ellipse", "spline", "face"};
+// Of the kinds, in the order of StrokeKind, and of faces: dark grey, blue, green, violet, orange,
+// rose; light grey.
+constexpr double kColour[kNumKinds + 1][3] = {
+    {0.15, 0.15, 0.15}, {0.0, 0.35, 0.85}, {0.0, 0.6, 0.3}, {0.6, 0.1, 0.7},
+    {0.9, 0.45, 0.0},   {0.85, 0.1, 0.45}, {0.8, 0.8, 0.8}};
+constexpr const char* kLayer[kNumKinds + 1] = {"line",   "arc",          "circle", "ellipse",
+                                               "spline", "elliptic_arc", "face"};
 
 // A share of the sketch's extent that no CAD program looks at: arcs flatter than it are lines.
 constexpr double kUncertainty = 1e-7;
@@ -67,6 +68,14 @@ int write_edge(const Sketch& sketch, int s, const std::vector<int>& vertex, doub
     case StrokeKind::kBezier:
       curve = file->cubic(c);
       break;
+    case StrokeKind::kEllipticArc: {
+      const EllipticArcParameters e = elliptic_arc_parameters(c);
+      const Eigen::Vector3d rise = c.p[1] - (c.p[0] + c.p[3]) / 2;
+      curve = !e.straight && rise.norm() > uncertainty
+                  ? file->ellipse(e.centre, principal_axes(e.p, e.q))
+                  : file->line(c.p[0], c.p[3]);
+      break;
+    }
   }
   const std::string name = std::string(kind_name(stroke.kind)) + "_" + std::to_string(s);
   return file->add("EDGE_CURVE(" + quoted(name) + "," + reference(begin) + "," + reference(end) +
@@ -163,7 +172,7 @@ int write_style(StepFile* file, int kind, int font) {
   const std::string colour = reference(
       file->add("COLOUR_RGB(''," + real(rgb[0]) + "," + real(rgb[1]) + "," + real(rgb[2]) + ")"));
   int style = 0;
-  if (kind < kKinds) {
+  if (kind < kNumKinds) {
     style = file->add("CURVE_STYLE(''," + reference(font) + ",POSITIVE_LENGTH_MEASURE(0.1)," +
                       colour + ")");
   } else {
@@ -179,11 +188,11 @@ int write_style(StepFile* file, int kind, int font) {
 // One style and one layer a kind, one STYLED_ITEM an edge or face.
 void write_presentation(StepFile* file, const Sketch& sketch, const std::vector<int>& edges,
                         const std::vector<int>& faces, int context) {
-  std::vector<int> of_kind[kKinds + 1], items;
+  std::vector<int> of_kind[kNumKinds + 1], items;
   for (int i = 0; i < sketch.size(); ++i) of_kind[int(sketch.strokes[i].kind)].push_back(edges[i]);
-  of_kind[kKinds] = faces;
+  of_kind[kNumKinds] = faces;
   const int font = file->add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')");
-  for (int kind = 0; kind <= kKinds; ++kind) {
+  for (int kind = 0; kind <= kNumKinds; ++kind) {
     if (of_kind[kind].empty()) continue;
     const int style = write_style(file, kind, font);
     for (const int item : of_kind[kind])

@@ -23,7 +23,8 @@ using Box2 = Eigen::AlignedBox2d;
 constexpr double kWidth = 420, kHeight = 297, kMargin = 20, kGap = 20, kTitle = 12;
 constexpr double kInvisible = 1e-4;
 
-constexpr const char* kClass[] = {"line", "arc", "circle", "ellipse", "spline"};
+constexpr const char* kClass[kNumKinds] = {"line",    "arc",    "circle",
+                                           "ellipse", "spline", "elliptic_arc"};
 
 // A direction to look from: rows are right and up on paper.
 struct View {
@@ -129,6 +130,13 @@ std::string path_of(const Sketch& sketch, int i, const Eigen::Matrix<double, 2, 
     }
     case StrokeKind::kEllipse:
       return conic(c.p[0], c.p[1], c.p[2], 2 * M_PI) + " Z";
+    case StrokeKind::kEllipticArc: {
+      const EllipticArcParameters e = elliptic_arc_parameters(c);
+      if (e.straight) break;
+      const double begin = -e.half_angle;
+      return conic(e.centre, std::cos(begin) * e.p + std::sin(begin) * e.q,
+                   std::cos(begin) * e.q - std::sin(begin) * e.p, 2 * e.half_angle);
+    }
     case StrokeKind::kBezier: {
       Path path(at(c.p[0]));
       path.cubic(at(c.p[1]), at(c.p[2]), at(c.p[3]));
@@ -223,7 +231,8 @@ void write_svg(std::ostream& out, const Sketch& sketch, const SvgOptions& option
       << "\">\n<title>" << escaped(options.name) << "</title>\n<style>\n"
       << ".stroke{fill:none;stroke-width:0.35;stroke-linecap:round;stroke-linejoin:round}\n"
       << ".line{stroke:#262626}.arc{stroke:#0059d9}.circle{stroke:#00994d}"
-      << ".ellipse{stroke:#991ab3}.spline{stroke:#e67300}\n"
+      << ".ellipse{stroke:#991ab3}.spline{stroke:#e67300}"
+      << ".elliptic_arc{stroke:#d91a73}\n"
       << "text{font:3.5px sans-serif;text-anchor:middle;fill:#262626}\n</style>\n"
       << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   for (const View& view : views) write_view(out, sketch, view, scale, real);

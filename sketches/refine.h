@@ -33,6 +33,10 @@ struct RefineOptions {
 FitQuality refine_curve(StrokeKind kind, const Eigen::Matrix3Xd& points,
                         const RefineOptions& options, ControlPoints* control);
 
+/// Control points (centre, u, v) of an ellipse to start from: direct fit in the plane of the least
+/// spread; false if there is none.
+bool start_ellipse(const Normalised& n, ControlPoints* control);
+
 /// Root mean square and largest of distances; no success if one is not finite.
 FitQuality quality_of(const Eigen::VectorXd& distances);
 

@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "sketches/curve.h"
 
@@ -41,6 +43,19 @@ struct SampleResidual {
   bool operator()(const T* a, const T* b, const T* c, const T* d, T* r) const {
     const T* p[] = {a, b, c, d};
     return apply(p, 4, r);
+  }
+};
+
+// Sine between the tangents of a smooth joint.
+struct SmoothResidual {
+  double root_weight;
+  template <typename T>
+  bool operator()(const T* a, const T* node, const T* b, T* r) const {
+    using Map = Eigen::Map<const Vec3<T>>;
+    const Vec3<T> u = Map(a) - Map(node), v = Map(b) - Map(node);
+    Eigen::Map<Vec3<T>> out(r);
+    out = u.cross(v) * (T(root_weight) / sqrt(u.squaredNorm() * v.squaredNorm() + T(1e-300)));
+    return true;
   }
 };
 
@@ -82,7 +97,58 @@ double cost_of(const Sketch& sketch, const SampleLayout& layout, const Samples& 
   return sum;
 }
 
+// The column that tells the tangent of a cubic or a line at one of its ends.
+SmoothJoint::Column tangent_column(const Stroke& s, bool at_end) {
+  if (s.kind == StrokeKind::kLine) return {true, at_end ? s.begin : s.end};
+  return {false, s.handle + (at_end ? 1 : 0)};
+}
+
+void add_smooth_joints(const RefineSketchOptions& options, Sketch* s, ceres::Problem* problem) {
+  const auto data = [&](SmoothJoint::Column c) {
+    return (c.is_node ? s->nodes : s->handles).col(c.index).data();
+  };
+  for (const SmoothJoint& joint : find_smooth_joints(*s, options.smooth_angle)) {
+    double* const blocks[] = {data(joint.before), s->nodes.col(joint.node).data(),
+                              data(joint.after)};
+    // Not where no edgel says anything.
+    if (!problem->HasParameterBlock(blocks[0]) || !problem->HasParameterBlock(blocks[2])) continue;
+    problem->AddResidualBlock(new ceres::AutoDiffCostFunction<SmoothResidual, 3, 3, 3, 3>(
+                                  new SmoothResidual{std::sqrt(options.smooth_weight)}),
+                              nullptr, blocks[0], blocks[1], blocks[2]);
+  }
+}
+
 }  // namespace
+
+std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_angle) {
+  std::vector<std::vector<std::pair<int, bool>>> ends(sketch.nodes.cols());
+  for (int i = 0; i < sketch.size(); ++i)
+    if (const Stroke& s = sketch.strokes[i]; !is_closed(s.kind)) {
+      ends[s.begin].push_back({i, false});
+      ends[s.end].push_back({i, true});
+    }
+  std::vector<SmoothJoint> joints;
+  const auto plain = [](StrokeKind k) {
+    return k == StrokeKind::kLine || k == StrokeKind::kBezier;
+  };
+  for (int n = 0; n < int(ends.size()); ++n) {
+    if (ends[n].size() != 2 || ends[n][0].first == ends[n][1].first) continue;
+    const auto [i, i_end] = ends[n][0];
+    const auto [k, k_end] = ends[n][1];
+    const Stroke &a = sketch.strokes[i], &b = sketch.strokes[k];
+    if (!plain(a.kind) || !plain(b.kind)) continue;
+    if (a.kind == StrokeKind::kLine && b.kind == StrokeKind::kLine) continue;
+    SmoothJoint joint{n, tangent_column(a, i_end), tangent_column(b, k_end), 0};
+    const auto at = [&](SmoothJoint::Column c) -> Eigen::Vector3d {
+      return (c.is_node ? sketch.nodes : sketch.handles).col(c.index) - sketch.nodes.col(n);
+    };
+    const Eigen::Vector3d u = at(joint.before), v = at(joint.after);
+    if (!(u.norm() > 0 && v.norm() > 0)) continue;
+    joint.angle = std::atan2(u.cross(v).norm(), -u.dot(v));
+    if (joint.angle <= smooth_angle) joints.push_back(joint);
+  }
+  return joints;
+}
 
 RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
                                  const SampleQuadratics& quadratics,
@@ -120,6 +186,7 @@ RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layou
   }
   if (problem.NumResidualBlocks() == 0) return result;
   const double hold = std::sqrt(options.stiffness * trace / problem.NumResidualBlocks());
+  if (options.smooth_angle > 0) add_smooth_joints(options, &s, &problem);
   // By index: the solver itself lists blocks by address, which is another every time.
   for (Eigen::Matrix3Xd* points : {&s.nodes, &s.handles})
     for (int i = 0; i < points->cols(); ++i) {

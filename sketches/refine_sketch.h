@@ -17,12 +17,30 @@ struct SampleQuadratics {
 struct RefineSketchOptions {
   double stiffness = 1e-4;  ///< prior that holds control points, in units of the mean information
   int max_iterations = 20;
+  /// Joints that turn by at most this are smooth: two cubics, or a cubic and a line, and no other
+  /// stroke at their node [rad]. 0: none.
+  double smooth_angle = 0;
+  double smooth_weight = 0;  ///< [cost / rad^2] that holds the tangents of a smooth joint together
 };
 
 struct RefineSketchResult {
   Sketch sketch;
   double initial_cost = 0, final_cost = 0;  ///< of the quadratics, without the prior
 };
+
+/// Two columns of control points that lie, with their node between them, on a line: the tangents of
+/// a smooth joint.
+struct SmoothJoint {
+  struct Column {
+    bool is_node = false;  ///< of Sketch::nodes, the far end of a line; else of Sketch::handles
+    int index = -1;
+  };
+  int node = -1;
+  Column before, after;
+  double angle = 0;  ///< [rad] between the tangents, 0 if they continue one another
+};
+/// All joints that turn by at most `smooth_angle` [rad], see RefineSketchOptions.
+std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_angle);
 
 /// Moves nodes and handles so that the samples of `layout` reach the least sum of their quadratics.
 /// Strokes that share a node stay joined. What the samples do not determine (an end along its line)

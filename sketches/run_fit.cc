@@ -9,6 +9,8 @@
 #include <cmath>
 
 #include "sketches/closest.h"
+#include "sketches/conic.h"
+#include "sketches/ellipse_run.h"
 #include "sketches/fit.h"
 
 namespace sketchsplat {
@@ -159,6 +161,26 @@ RunFit cubic_through(const Matrix3Xd& p) {
   return out;
 }
 
+RunFit elliptic_arc_through(const Matrix3Xd& p, double closing) {
+  RunFit out;
+  if (p.cols() < 10) return out;
+  const EllipseRun fit = ellipse_along(p);
+  const double gap = 2 * M_PI - fit.sweep();
+  if (!fit.ok || gap < -0.2) return out;
+  out.distance = fit.distance;
+  if (gap < 0.2 || gap * fit.p.norm() < closing) {
+    out.kind = StrokeKind::kEllipse;
+    out.handles = {fit.centre, fit.p, fit.q};
+    return out;
+  }
+  if (fit.sweep() > kMostEllipseSweep) return {};
+  const ControlPoints c =
+      elliptic_arc(fit.centre, fit.p, fit.q, fit.angle[0], fit.angle[fit.angle.size() - 1]);
+  out.kind = StrokeKind::kEllipticArc;
+  out.begin = c.p[0], out.end = c.p[3];
+  out.handles = {c.p[1], c.p[2]};
+  return out;
+}
 
 RunFit ellipse_through(const Matrix3Xd& p) {
   RunFit out;

@@ -31,6 +31,10 @@ RunFit arc_through(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tange
 /// At least 6 points.
 RunFit cubic_through(const Eigen::Matrix3Xd& points);
 
+/// Elliptic arc, or ellipse if the run leaves a gap of at most `closing` (world units) or 0.2 rad.
+/// At least 10 points that turn by 0.8 to 5.2 rad or all around (see ellipse_along).
+RunFit elliptic_arc_through(const Eigen::Matrix3Xd& points, double closing);
+
 /// Closed; at least 8 points that go around its centre once.
 RunFit ellipse_through(const Eigen::Matrix3Xd& points);
 

@@ -14,9 +14,17 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double kOutlier = 8;     // [nat]
+constexpr double kRound = 0.25;    // [unit] what lies nearer to its circle is no ellipse
 constexpr double kClosing = 6;     // [unit] gap that a circle closes
 constexpr int kMostCuts = 24;      // candidates of a run
 constexpr double kHopeless = 1e9;  // [nat] of points that no curve can be fitted to
+
+// Distance that 9 in 10 points keep.
+double ninth_decile(Eigen::VectorXd d) {
+  const Eigen::Index k = std::min(d.size() - 1, d.size() * 9 / 10);
+  std::nth_element(d.data(), d.data() + k, d.data() + d.size());
+  return d[k];
+}
 
 class Cutter {
  public:
@@ -63,6 +71,12 @@ class Cutter {
     // Not worth a look if the parameters alone cost more.
     if (b - a >= 5 && out.cost > price(StrokeKind::kArc))
       consider(arc_through(p, t, closed, kClosing * unit_), &out);
+    // What hides an edge in some views bends it by so much: no reason to take a circle for an
+    // ellipse.
+    const bool round =
+        out.fit.kind != StrokeKind::kLine && ninth_decile(out.fit.distance) < kRound * unit_;
+    if (!closed && !round && options_.elliptic && out.cost > price(StrokeKind::kEllipticArc))
+      consider(elliptic_arc_through(p, kClosing * unit_), &out);
     if (closed && out.cost > price(StrokeKind::kEllipse)) consider(ellipse_through(p), &out);
     return out;
   }
@@ -168,13 +182,6 @@ bool is_corner(const Matrix3Xd& p, const Matrix3Xd& t, int i, int j, const Segme
   return a.dot(b) < std::cos(o.corner_deg * M_PI / 180);
 }
 
-// Distance that 9 in 10 points keep.
-double ninth_decile(Eigen::VectorXd d) {
-  const Eigen::Index k = std::min(d.size() - 1, d.size() * 9 / 10);
-  std::nth_element(d.data(), d.data() + k, d.data() + d.size());
-  return d[k];
-}
-
 constexpr double kFar = 4;  // [sigma] pieces whose points lie farther are no curve
 
 }  // namespace
@@ -207,7 +214,11 @@ std::vector<RunPiece> cut_run(const Matrix3Xd& points, const Matrix3Xd& tangents
 }
 
 void segment_chain(const Matrix3Xd& points, const Matrix3Xd& tangents, bool closed, double unit,
-                   const SegmentOptions& options, Sketch* sketch) {
+                   const SegmentOptions& asked, Sketch* sketch) {
+  // Lifted points scatter: an arc of an ellipse would swallow a line and an arc. Who asks the
+  // edgels later on can tell.
+  SegmentOptions options = asked;
+  options.elliptic = false;
   const int n = int(points.cols());
   std::vector<int> corners;
   for (int i = 0; i + 1 < n; ++i)

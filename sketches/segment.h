@@ -15,14 +15,16 @@ struct SegmentOptions {
   double corner_deg = 25.0;  ///< [deg] turn from point to point that ends a piece
   int min_points = 3;        ///< shorter pieces are dropped
   double min_length = 4.0;   ///< times `unit`: so are these
+  bool elliptic = true;      ///< arcs of ellipses are tried
 };
 
 /// Parameters of a curve that goes on from the one before it: where it ends and how it bends.
 constexpr int num_parameters(StrokeKind kind) {
-  return kind == StrokeKind::kLine     ? 3
-         : kind == StrokeKind::kArc    ? 5
-         : kind == StrokeKind::kCircle ? 6
-                                       : 8;
+  return kind == StrokeKind::kLine          ? 3
+         : kind == StrokeKind::kArc         ? 5
+         : kind == StrokeKind::kCircle      ? 6
+         : kind == StrokeKind::kEllipticArc ? 7
+                                            : 8;
 }
 
 /// Length of a description [nat]: the points' squared distances from the curve in units of 2
@@ -40,15 +42,16 @@ struct RunPiece {
   double cost = 0;  ///< description length, less what it saves after its neighbour
 };
 
-/// Cuts an ordered run into the curves whose description is the shortest: lines, arcs, cubics, or
-/// one circle or ellipse if it is closed (then the pieces begin at a cut, and indices go on from n
-/// to 2 n). Dynamic programming over cuts (Bellman 1961), then each cut alone is moved to where it
-/// is best. `points`, `tangents`: 3 x n, `sigma`: of the points, world units.
+/// Cuts an ordered run into the curves whose description is the shortest: lines, arcs, arcs of
+/// ellipses, cubics, or one circle or ellipse if it is closed (then the pieces begin at a cut, and
+/// indices go on from n to 2 n). Dynamic programming over cuts (Bellman 1961), then each cut alone
+/// is moved to where it is best. `points`, `tangents`: 3 x n, `sigma`: of the points, world units.
 std::vector<RunPiece> cut_run(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tangents,
                               bool closed, double sigma, double unit,
                               const SegmentOptions& options);
 
-/// Cuts a run of points with tangents at its corners, then each part as cut_run does. Strokes are
+/// Cuts a run of points with tangents at its corners, then each part as cut_run does, but never
+/// into arcs of ellipses: lifted points scatter too much to tell them. Strokes are
 /// appended to `sketch`, with nodes of their own. `unit` is the length that tolerances are measured
 /// in (one pixel at the object), world units.
 void segment_chain(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tangents, bool closed,

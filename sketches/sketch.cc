@@ -8,7 +8,8 @@
 namespace sketchsplat {
 namespace {
 
-constexpr const char* kNames[] = {"line", "arc", "circle", "ellipse", "bezier"};
+constexpr const char* kNames[kNumKinds] = {"line",    "arc",    "circle",
+                                           "ellipse", "bezier", "elliptic_arc"};
 
 void append_column(Eigen::Matrix3Xd* m, const Eigen::Vector3d& p) {
   m->conservativeResize(Eigen::NoChange, m->cols() + 1);
@@ -22,8 +23,8 @@ double axes_sine(const Sketch& sketch, const Stroke& s) {
   return u.stableNormalized().cross(sketch.handles.col(s.handle + 2).stableNormalized()).norm();
 }
 
-// Chord of a line or an arc (an arc closes up without one); of a cubic, that of its control
-// polygon.
+// Chord of a line or an arc of either kind (it closes up without one); of a cubic, that of its
+// control polygon.
 double extent(const Sketch& sketch, int stroke) {
   const ControlPoints c = control_points(sketch, stroke);
   double largest = (c.p[c.count - 1] - c.p[0]).norm();
@@ -37,7 +38,7 @@ double extent(const Sketch& sketch, int stroke) {
 const char* kind_name(StrokeKind kind) { return kNames[int(kind)]; }
 
 bool parse_kind(const std::string& name, StrokeKind* kind) {
-  for (int i = 0; i < 5; ++i)
+  for (int i = 0; i < kNumKinds; ++i)
     if (name == kNames[i]) {
       *kind = StrokeKind(i);
       return true;

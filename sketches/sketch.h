@@ -9,12 +9,19 @@
 
 namespace sketchsplat {
 
+// clang-format off
 /// Kinds of curve and the columns of control points that define them:
-///   line    begin, end
-///   arc     begin, apex, end   circular, < 360 deg; only apex minus its part along the chord
-///   counts circle  centre, axis       closed; axis = unit normal times radius ellipse centre, u, v
-///   closed; centre + cos u + sin v bezier  begin, h0, h1, end cubic
-enum class StrokeKind { kLine, kArc, kCircle, kEllipse, kBezier };
+///   line          begin, end
+///   arc           begin, apex, end           circular, < 360 deg; of apex only what is square to
+///                                            the chord counts
+///   circle        centre, axis               closed; axis = unit normal times radius
+///   ellipse       centre, u, v               closed; centre + cos u + sin v
+///   bezier        begin, h0, h1, end         cubic
+///   elliptic_arc  begin, apex, quarter, end  < 360 deg; of quarter only what is along apex - middle
+///                                            of the chord counts; see EllipticFrame
+// clang-format on
+enum class StrokeKind { kLine, kArc, kCircle, kEllipse, kBezier, kEllipticArc };
+constexpr int kNumKinds = 6;
 
 constexpr int num_handles(StrokeKind kind) {
   return kind == StrokeKind::kLine      ? 0

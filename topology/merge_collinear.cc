@@ -76,7 +76,7 @@ std::optional<Merge> tie(const Context& c, PlainCurve fit, End x, End y) {
   const Vector3d pu = point_of(c.draft, u), pv = point_of(c.draft, v);
   const double as_is = (fit.begin() - pu).norm() + (fit.end() - pv).norm();
   const double swapped = (fit.begin() - pv).norm() + (fit.end() - pu).norm();
-  if (swapped < as_is) std::reverse(fit.p.begin(), fit.p.begin() + fit.size());
+  if (swapped < as_is) fit = backwards(fit);
   return settle(c.draft, c.degrees, c.a, c.b, fit, node_of(c.draft, u), node_of(c.draft, v),
                 limits_of(c, 1));
 }
@@ -177,18 +177,20 @@ double step_between(const Context& c, End x, End y) {
   return -std::min(inside_a * a.samples.length, inside_b * b.samples.length);
 }
 
-std::optional<Merge> continue_curve(const Context& c, End x, End y, double step, bool cubic) {
+std::optional<Merge> continue_curve(const Context& c, End x, End y, double step, StrokeKind kind) {
   const Piece &a = c.piece(x.piece), &b = c.piece(y.piece);
   const Run ra = x.at_end ? run_of(a) : reversed(run_of(a));
   const Run rb = y.at_end ? reversed(run_of(b)) : run_of(b);
   std::optional<PlainCurve> fit;
-  if (cubic) {
+  if (kind == StrokeKind::kBezier) {
     VectorXd sa = arc_lengths(a.samples), sb = arc_lengths(b.samples);
     if (!x.at_end) sa = (a.samples.length - sa.reverse().array()).eval();
     if (y.at_end) sb = (b.samples.length - sb.reverse().array()).eval();
     VectorXd s(sa.size() + sb.size());
     s << sa, sb.array() + a.samples.length + step;
     fit = refit_bezier(joined({ra, rb}), s);
+  } else if (kind == StrokeKind::kEllipticArc) {
+    fit = refit_elliptic_arc({ra, rb}, c.px(c.options.gap_px));
   } else {
     fit = refit_arc({ra, rb}, c.px(c.options.gap_px));
   }
@@ -202,14 +204,15 @@ bool line_is_short(const Piece& a, const Piece& b) {
 
 std::optional<Merge> join_curves(const Context& c) {
   if (!line_is_short(c.piece(c.a), c.piece(c.b)) || !touch(c)) return std::nullopt;
-  const bool any_cubic = c.piece(c.a).curve.kind == StrokeKind::kBezier ||
-                         c.piece(c.b).curve.kind == StrokeKind::kBezier;
+  // The simplest kind that serves, up to what one of the two is.
+  std::vector<StrokeKind> kinds = {StrokeKind::kArc};
+  for (StrokeKind kind : {StrokeKind::kEllipticArc, StrokeKind::kBezier})
+    if (c.piece(c.a).curve.kind == kind || c.piece(c.b).curve.kind == kind) kinds.push_back(kind);
   for (const auto& [x, y] : facing_ends(c)) {
     const double step = step_between(c, x, y);
     if (std::isnan(step) || !is_free(c, x, y)) continue;
-    for (bool cubic : {false, true}) {
-      if (cubic && !any_cubic) continue;
-      auto m = continue_curve(c, x, y, step, cubic);
+    for (StrokeKind kind : kinds) {
+      auto m = continue_curve(c, x, y, step, kind);
       if (!m) continue;
       if (step > 0) m->cost += step / c.px(c.options.gap_px);
       return m;

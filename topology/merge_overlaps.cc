@@ -71,6 +71,8 @@ std::optional<PlainCurve> refit(StrokeKind kind, const Piece& longer, const Piec
       return refit_line(runs);
     case StrokeKind::kArc:
       return refit_arc(runs, 0);
+    case StrokeKind::kEllipticArc:
+      return refit_elliptic_arc(runs, 0);
     case StrokeKind::kCircle:
       return closed ? refit_circle(joined(runs)) : std::nullopt;
     case StrokeKind::kBezier: {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sketches/conic.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -146,6 +148,11 @@ PlainCurve move_ends(const PlainCurve& curve, const Vector3d& begin, const Vecto
   }
   out.p[0] = begin;
   out.p[curve.size() - 1] = end;
+  if (curve.kind == StrokeKind::kEllipticArc) {
+    ControlPoints c;
+    c.p = curve.p, c.count = 4;
+    out.p = elliptic_arc_between(c, begin, end).p;
+  }
   if (curve.kind != StrokeKind::kArc) return out;
   // The new apex is where the old circle crosses the plane half way between the new ends.
   out.p[1] = curve.p[1] + (d0 + d1) / 2;
@@ -163,6 +170,13 @@ PlainCurve move_ends(const PlainCurve& curve, const Vector3d& begin, const Vecto
   const double half = std::sin(psi / 2);  // as in evaluate_curve: no cancellation at large radii
   out.p[1] = f.middle + f.up * (f.sagitta - 2 * f.radius * half * half) +
              f.along * (f.radius * std::sin(psi));
+  return out;
+}
+
+PlainCurve backwards(const PlainCurve& curve) {
+  PlainCurve out = curve;
+  std::reverse(out.p.begin(), out.p.begin() + out.size());
+  if (curve.kind == StrokeKind::kEllipticArc) std::swap(out.p[1], out.p[2]);
   return out;
 }
 

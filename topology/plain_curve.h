@@ -52,9 +52,14 @@ double max_distance(const PlainCurve& curve, const Eigen::Matrix3Xd& points);
 Eigen::Vector3d outward_tangent(const PlainCurve& curve, bool at_end);
 
 /// The open curve with its ends moved and no kink: a cubic is displaced by a linear function of t,
-/// an arc keeps passing through its own old middle part, a line is a line.
+/// an
+/// arc keeps passing through its own old middle part, an elliptic arc keeps its ellipse as far as
+/// the ends allow, a line is a line.
 PlainCurve move_ends(const PlainCurve& curve, const Eigen::Vector3d& begin,
                      const Eigen::Vector3d& end);
+
+/// The open curve run through the other way.
+PlainCurve backwards(const PlainCurve& curve);
 
 /// The full circle that an arc lies on. The arc must not be straight.
 PlainCurve circle_of_arc(const PlainCurve& arc);

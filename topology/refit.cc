@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sketches/conic.h"
+#include "sketches/ellipse_run.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -263,6 +266,32 @@ std::optional<PlainCurve> refit_bezier(const Run& points, VectorXd t) {
 std::optional<PlainCurve> refit_ellipse(const Run& points, VectorXd t) {
   const auto e = refit_linear(StrokeKind::kEllipse, points, std::move(t));
   return e ? if_sound(with_principal_axes(*e)) : std::nullopt;
+}
+
+std::optional<PlainCurve> refit_elliptic_arc(const std::vector<Run>& runs, double closing) {
+  const Run all = joined(runs);
+  const EllipseRun fit = ellipse_through_runs(all.position, all.weight);
+  if (!fit.ok) return std::nullopt;
+  std::vector<Interval> parts;
+  Eigen::Index first = 0;
+  for (const Run& run : runs) {
+    const auto angle = fit.angle.segment(first, run.weight.size());
+    parts.push_back({angle.minCoeff(), angle.maxCoeff()});
+    if (!(parts.back().high - parts.back().low < 2 * M_PI)) return std::nullopt;
+    first += run.weight.size();
+  }
+  const Interval whole = cover(parts);
+  const double turn = whole.high - whole.low;
+  PlainCurve out;
+  if ((2 * M_PI - turn) * fit.p.norm() <= closing) {
+    out.kind = StrokeKind::kEllipse;
+    out.p = {fit.centre, fit.p, fit.q, Vector3d::Zero()};
+    return if_sound(with_principal_axes(out));
+  }
+  if (turn < kLeastEllipseSweep || turn > kMostEllipseSweep) return std::nullopt;
+  out.kind = StrokeKind::kEllipticArc;
+  out.p = elliptic_arc(fit.centre, fit.p, fit.q, whole.low, whole.high).p;
+  return if_sound(out);
 }
 
 PlainCurve with_principal_axes(const PlainCurve& ellipse) {

@@ -41,6 +41,11 @@ std::optional<PlainCurve> refit_bezier(const Run& points, Eigen::VectorXd t);
 /// Ellipse in the same way from start parameters in [0, 1]; its axes are orthogonal afterwards.
 std::optional<PlainCurve> refit_ellipse(const Run& points, Eigen::VectorXd t);
 
+/// Arc of the ellipse through all runs that leaves out the largest angle which no run covers; the
+/// ellipse itself if that is at most `closing` world units long. Nothing if they turn by less than
+/// kLeastEllipseSweep, or by more than kMostEllipseSweep and leave more.
+std::optional<PlainCurve> refit_elliptic_arc(const std::vector<Run>& runs, double closing);
+
 /// The same ellipse by its half axes: u the longer one, v orthogonal to it.
 PlainCurve with_principal_axes(const PlainCurve& ellipse);
 

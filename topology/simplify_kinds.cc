@@ -70,7 +70,7 @@ std::optional<PlainCurve> simpler(const Piece& piece, bool ends_are_free,
   const StrokeKind kind = piece.curve.kind;
   const double tolerance = options.kind_px * options.footprint;
   if (kind == StrokeKind::kEllipse) return ellipse_as_circle(piece.curve, tolerance);
-  if (kind != StrokeKind::kArc && kind != StrokeKind::kBezier) return std::nullopt;
+  if (kind == StrokeKind::kLine || kind == StrokeKind::kCircle) return std::nullopt;
   if (auto line = as_line(piece.curve, piece.samples, tolerance)) return line;
   const double closing = ends_are_free ? options.gap_px : options.endpoint_px;
   if (auto circle = as_circle(piece, closing * options.footprint, tolerance)) return circle;
@@ -85,7 +85,7 @@ std::optional<PlainCurve> simpler(const Piece& piece, bool ends_are_free,
 PassResult simplify_kinds(const Sketch& sketch, const TopologyOptions& options) {
   Draft draft(sketch);
   for (int i = 0; i < draft.size(); ++i) {
-    // At most cubic -> arc -> circle.
+    // At most cubic or elliptic arc -> arc -> circle.
     while (draft.pieces[i].alive) {
       const Piece& piece = draft.pieces[i];
       bool free = true;

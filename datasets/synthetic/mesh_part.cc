@@ -277,11 +277,10 @@ class Drawer {
   }
 
   TruthCurve curve(const std::vector<int>& vertices, const RunPiece& piece) const {
-    static const std::map<StrokeKind, const char*> kTypes = {{StrokeKind::kLine, "Line"},
-                                                             {StrokeKind::kArc, "Circle"},
-                                                             {StrokeKind::kCircle, "Circle"},
-                                                             {StrokeKind::kEllipse, "Ellipse"},
-                                                             {StrokeKind::kBezier, "BSpline"}};
+    static const std::map<StrokeKind, const char*> kTypes = {
+        {StrokeKind::kLine, "Line"},           {StrokeKind::kArc, "Circle"},
+        {StrokeKind::kCircle, "Circle"},       {StrokeKind::kEllipse, "Ellipse"},
+        {StrokeKind::kEllipticArc, "Ellipse"}, {StrokeKind::kBezier, "BSpline"}};
     TruthCurve out;
     out.type = kTypes.at(piece.kind);
     out.closed = vertices[piece.first] == vertices[piece.last];

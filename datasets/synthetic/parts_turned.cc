@@ -36,6 +36,19 @@ TopoDS_Shape cut_cylinder(const Dimensions& d) {
   return cut(cylinder(Vector3d::Zero(), {0, 0, h + 5}, r), wedge);
 }
 
+// Two slanted planes that meet in a ridge: two arcs of ellipses.
+TopoDS_Shape ridge_cylinder(const Dimensions& d) {
+  const double r = d["radius"], h = d["height"] * r, big = 3 * r, x = d["ridge"] * r;
+  TopoDS_Shape shape = cylinder(Vector3d::Zero(), {0, 0, h + r}, r);
+  for (int side : {-1, 1}) {
+    const double slope = d[side < 0 ? "left-rise" : "right-rise"], end = side * big;
+    const Vector3d ridge(x, -big, h), foot(end, -big, h - slope * std::abs(end - x));
+    const Vector3d up(0, 0, 2 * big);
+    shape = cut(shape, prism({ridge, foot, foot + up, ridge + up}, Vector3d(0, 2 * big, 0)));
+  }
+  return shape;
+}
+
 TopoDS_Shape frustum(const Dimensions& d) {
   return cone(Vector3d::Zero(), {0, 0, d["height"]}, d["radius"], d["top"] * d["radius"]);
 }
@@ -198,6 +211,7 @@ const std::vector<PartMaker>& turned_parts() {
   static const std::vector<PartMaker> parts = {
       {"stepped-shaft", stepped_shaft},
       {"cut-cylinder", cut_cylinder},
+      {"ridge-cylinder", ridge_cylinder},
       {"frustum", frustum},
       {"hex-nut", hex_nut},
       {"flange", flange},

@@ -20,6 +20,7 @@
 #include <cmath>
 
 #include "datasets/synthetic/curve_kind.h"
+#include "sketches/conic.h"
 
 namespace sketchsplat {
 namespace {
@@ -28,6 +29,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double kKindTolerance = 1e-6;   // a stored B-spline this close to a line or circle is one
+constexpr double kMostTurn = 6;           // [rad] of an elliptic arc that is not closed
 constexpr double kCubicTolerance = 1e-5;  // of the cubics that stand for other curves
 constexpr double kDeflection = 1e-5;      // of the sampled truth
 constexpr double kSpacing = 0.005;
@@ -162,8 +164,16 @@ class Collector {
     } else if (shape.kind == CurveShape::kElliptic && out->closed) {
       out->type = "Ellipse";
       stroke(StrokeKind::kEllipse, -1, -1, {shape.centre, shape.u, shape.v});
+    } else if (shape.kind == CurveShape::kElliptic && shape.turn < kMostTurn) {
+      out->type = "Ellipse";
+      const Vector3d begin = curve.point(curve.first) - shape.centre;
+      const double angle = std::atan2(begin.dot(shape.v) / shape.v.squaredNorm(),
+                                      begin.dot(shape.u) / shape.u.squaredNorm());
+      const ControlPoints c =
+          elliptic_arc(shape.centre, shape.u, shape.v, angle, angle + shape.turn);
+      stroke(StrokeKind::kEllipticArc, node(first), node(last), {c.p[1], c.p[2]});
     } else {
-      // There is no stroke for an arc of an ellipse.
+      // A short arc of an ellipse may be a short arc of anything.
       const bool arc = shape.kind == CurveShape::kElliptic || adaptor.GetType() == GeomAbs_Ellipse;
       out->type = arc ? "Ellipse" : "BSpline";
       add_cubics(curve, breaks, first, last);

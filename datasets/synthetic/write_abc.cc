@@ -12,6 +12,7 @@
 
 #include "datasets/synthetic/curve_kind.h"
 #include "sketches/closest.h"
+#include "sketches/conic.h"
 
 namespace sketchsplat {
 namespace {
@@ -149,6 +150,13 @@ CurveShape shape_of(const Sketch& sketch, int stroke, const TruthCurve& curve) {
   if (sketch.strokes[stroke].kind == StrokeKind::kEllipse) {
     shape.kind = CurveShape::kElliptic;
     shape.centre = c.p[0], shape.u = c.p[1], shape.v = c.p[2];
+    return shape;
+  }
+  if (sketch.strokes[stroke].kind == StrokeKind::kEllipticArc) {
+    const EllipticArcParameters e = elliptic_arc_parameters(c);
+    const EllipseAxes axes = principal_axes(e.p, e.q);
+    shape.kind = CurveShape::kElliptic;
+    shape.centre = e.centre, shape.u = axes.major, shape.v = axes.minor;
     return shape;
   }
   // Points of a mesh lie beside their circle: what the stroke says counts, not what they do.

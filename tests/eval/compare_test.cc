@@ -198,7 +198,8 @@ TEST(Parameters, AreDegreesOfFreedomLessWhatIsShared) {
   EXPECT_EQ(count_true_parameters(
                 {{"circle", arc(0.3, 0, 180)}, {"line", segment({-0.3, 0, 0}, {0.3, 0, 0})}}),
             8 + 6 - 2 * 3);
-  EXPECT_EQ(kind_of_edge({"ellipse", arc(0.3, 0, 180)}), "bezier");
+  EXPECT_EQ(kind_of_edge({"ellipse", arc(0.3, 0, 180)}), "elliptic_arc");
+  EXPECT_EQ(count({"ellipse", arc(0.3, 0, 180)}), 10);
 }
 
 }  // namespace

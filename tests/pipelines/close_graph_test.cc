@@ -115,6 +115,30 @@ TEST_F(CloseGraph, AnArcOfNearlyACircleIsTheCircleUnlessSomethingEndsThere) {
   EXPECT_EQ(close(s).rounded, 0);
 }
 
+// With masks, a gap is closed if no view contradicts; without any, if it is narrow.
+TEST_F(CloseGraph, ArcsOfNearlyAnEllipseAreTheEllipseUnlessSomethingEndsThere) {
+  const Vector3d centre(0.5, 0.5, 0.5), p(0.3, 0, 0.1), q(0, 0.15, 0);
+  const double narrow = 2 * M_PI - 3 * px / 0.3;
+  Sketch s;  // in two pieces that share a node, the second one backwards
+  const ControlPoints a = elliptic_arc(centre, p, q, 0, 3),
+                      b = elliptic_arc(centre, p, q, 3, narrow);
+  const int begin = s.add_node(a.p[0]), joint = s.add_node(a.p[3]), end = s.add_node(b.p[3]);
+  s.add_stroke(StrokeKind::kEllipticArc, begin, joint, {a.p[1], a.p[2]});
+  s.add_stroke(StrokeKind::kEllipticArc, end, joint, {b.p[1], b.p[2]});
+  const Closed c = close(s);
+  ASSERT_EQ(c.sketch.size(), 1);
+  EXPECT_EQ(c.rounded, 1);
+  ASSERT_EQ(c.sketch.strokes[0].kind, StrokeKind::kEllipse);
+  EXPECT_LT((c.sketch.handles.col(0) - centre).norm(), 0.1 * px);
+  EXPECT_TRUE(validate(c.sketch).empty());
+  Sketch held = s;
+  held.add_stroke(StrokeKind::kLine, joint, held.add_node({0.1, 0.1, 0.9}), {});
+  EXPECT_EQ(close(held).rounded, 0);
+  Sketch half;  // too little of it
+  add_elliptic_arc(&half, centre, p, q, 0, 3);
+  EXPECT_EQ(close(half).rounded, 0);
+}
+
 TEST_F(CloseGraph, WithoutMasksWideGapsStayOpen) {
   Sketch s;
   add_line(&s, {0.2, 0.2, 0.5}, {0.4, 0.2, 0.5});

@@ -14,7 +14,7 @@ using namespace test;  // NOLINT
 using Eigen::Vector3d;
 const Vector3d kMiddle(0.5, 0.5, 0.5);
 
-// A line, an arc and a cubic that share their ends, and a circle and an ellipse.
+// A line, an arc and a cubic that share their ends, a circle, an ellipse and an elliptic arc.
 Sketch every_kind() {
   Sketch s;
   const int a = s.add_node({0.1, 0.2, 0.5}), b = s.add_node({0.8, 0.25, 0.45});
@@ -24,6 +24,7 @@ Sketch every_kind() {
   s.add_stroke(StrokeKind::kBezier, c, a, {{0.5, 0.5, 0.9}, {0.1, 0.7, 0.2}});
   add_circle(&s, {0.4, 0.5, 0.3}, {0.02, 0.05, 0.2});
   s.add_stroke(StrokeKind::kEllipse, -1, -1, {{0.6, 0.5, 0.7}, {0.2, 0.02, 0}, {0, 0.02, 0.1}});
+  add_elliptic_arc(&s, {0.3, 0.6, 0.6}, {0.2, 0.05, 0}, {0, 0.02, 0.12}, 0.4, 3.0);
   return s;
 }
 
@@ -46,8 +47,8 @@ struct SmallWorld {
       targets.push_back(make_edge_target(edges.back(), loss));
     }
     drawing.sketch = every_kind();
-    drawing.width = Eigen::VectorXd::LinSpaced(5, 0.03, 0.05);
-    drawing.depth = Eigen::VectorXd::LinSpaced(5, 1.4, 0.7);
+    drawing.width = Eigen::VectorXd::LinSpaced(6, 0.03, 0.05);
+    drawing.depth = Eigen::VectorXd::LinSpaced(6, 1.4, 0.7);
     layout = plan_samples(drawing.sketch, 0.1);
     visibility = Eigen::MatrixXf::Ones(layout.size(), views.size());
     for (int i = 0; i < layout.size(); ++i) visibility(i, i % 3) = 0.25f * float(i % 4);

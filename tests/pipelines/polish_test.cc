@@ -45,6 +45,18 @@ TEST(Polish, BringsEveryKindBackToAFiftiethOfAPixel) {
   }
 }
 
+// From a fifth of a pixel: a flat arc's quarter point is a long lever.
+TEST(Polish, BringsArcsOfEllipsesBackToo) {
+  for (double turn : {2.0, 3.0, 4.5}) {
+    Sketch truth;
+    add_elliptic_arc(&truth, {0.5, 0.5, 0.5}, {0.35, 0, 0.1}, {0, 0.2, 0.06}, 0.3, 0.3 + turn);
+    const EdgeWorld w = world_of(truth);
+    const Sketch off = bent(truth, 0.25 * w.footprint), back = polish(off, w, {});
+    EXPECT_GT(farthest(off, 0, {polyline_of(truth, 0)}, 0.03), 0.1 * w.footprint);
+    EXPECT_LT(farthest(back, 0, {polyline_of(truth, 0)}, 0.03), 0.02 * w.footprint) << turn;
+  }
+}
+
 TEST(Polish, StrokesThatShareANodeStillDoAndItIsTheTrueCorner) {
   Sketch truth;
   const std::vector<Vector3d> corners = {

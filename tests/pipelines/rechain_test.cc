@@ -101,6 +101,27 @@ TEST(Rechain, TwoCubicsAroundAnEllipseAreTheEllipse) {
   EXPECT_EQ(out.sketch.strokes[0].kind, StrokeKind::kEllipse);
 }
 
+TEST(Rechain, CubicsOverAnArcOfAnEllipseAreThatArc) {
+  Sketch truth;
+  const Vector3d centre(0.5, 0.5, 0.5), u(0.3, 0, 0.1), v(0, 0.15, 0.05);
+  add_elliptic_arc(&truth, centre, u, v, -0.4, 2.9);
+  Sketch s;
+  const auto at = [&](double a) { return Vector3d(centre + std::cos(a) * u + std::sin(a) * v); };
+  const auto slope = [&](double a) { return Vector3d(std::cos(a) * v - std::sin(a) * u); };
+  int last = s.add_node(at(-0.4));
+  for (int k = 0; k < 3; ++k) {
+    const double a = -0.4 + 1.1 * k, b = a + 1.1, h = 4.0 / 3 * std::tan(1.1 / 4);
+    const int next = s.add_node(at(b));
+    s.add_stroke(StrokeKind::kBezier, last, next, {at(a) + h * slope(a), at(b) - h * slope(b)});
+    last = next;
+  }
+  const Rechained out = again(s, world_of(truth));
+  ASSERT_EQ(out.sketch.size(), 1);
+  EXPECT_EQ(out.sketch.strokes[0].kind, StrokeKind::kEllipticArc);
+  EXPECT_EQ(out.sketch.nodes.cols(), 2);
+  EXPECT_LT(farthest(out.sketch, 0, {polyline_of(truth, 0)}), 0.3 * 3.0 / 500);
+}
+
 TEST(Rechain, WhatIsDescribedWellStays) {
   const Sketch truth = rounded_corner();
   const EdgeWorld world = world_of(truth);

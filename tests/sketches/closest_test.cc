@@ -25,7 +25,7 @@ double brute_force(StrokeKind kind, const Vector3d* c, const Vector3d& p) {
 
 TEST(DistanceToStroke, AgreesWithBruteForceForAllKinds) {
   Random random;
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   for (int i = 0; i < s.size(); ++i)
     for (int k = 0; k < 40; ++k) {
       const Vector3d p = 1.5 * random.point();
@@ -42,7 +42,7 @@ TEST(DistanceToStroke, AgreesWithBruteForceForAllKinds) {
 }
 
 TEST(DistanceToStroke, IsZeroOnTheCurveAndFindsTheParameter) {
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   for (int i = 0; i < s.size(); ++i)
     for (double t : {0.0, 0.13, 0.5, 0.77, 1.0}) {
       Vector3d x, d;
@@ -93,6 +93,8 @@ TEST(DistanceToStroke, IsFiniteWhereEveryPointIsNearestAndForDegenerateCurves) {
                {StrokeKind::kEllipse, {o, e, {0, 0.5, 0}}, 0.5},
                {StrokeKind::kEllipse, {o, e, e}, 0},
                {StrokeKind::kEllipse, {o, o, o}, 0},
+               {StrokeKind::kEllipticArc, {o, o, o, o}, 0},
+               {StrokeKind::kEllipticArc, {-e, {0, 1, 0}, {0, std::sqrt(0.5), 0}, e}, 1},
                {StrokeKind::kBezier, {o, o, o, o}, 0},
                {StrokeKind::kBezier, {e, e, -e, -e}, 0}};
   for (const auto& c : cases) {

@@ -139,7 +139,7 @@ TEST(Bezier, MeetsDeCasteljau) {
 
 TEST(Derivative, AgreesWithCentralDifferencesForAllKinds) {
   Random random;
-  const Sketch s = moved(five_kinds(), 2.0, random.rotation(), random.point());
+  const Sketch s = moved(all_kinds(), 2.0, random.rotation(), random.point());
   const double h = 1e-6;
   for (int i = 0; i < s.size(); ++i)
     for (double t : {0.05, 0.31, 0.5, 0.93}) {
@@ -152,7 +152,7 @@ TEST(Derivative, AgreesWithCentralDifferencesForAllKinds) {
 
 TEST(Jets, CarryTheSameValuesAndTheDerivativesByTheControlPoints) {
   using J = ceres::Jet<double, 12>;
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   for (int i = 0; i < s.size(); ++i) {
     const StrokeKind kind = s.strokes[i].kind;
     const ControlPoints c = control_points(s, i);
@@ -193,7 +193,7 @@ TEST(Length, AgreesWithClosedForms) {
 }
 
 TEST(ArcLengthParameters, DivideEveryKindEvenly) {
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   const std::vector<double> fractions = {0.0, 0.1, 0.25, 0.5, 0.9, 1.0};
   for (int i = 0; i < s.size(); ++i) {
     const std::vector<double> t = arc_length_parameters(s, i, fractions);
@@ -211,7 +211,7 @@ TEST(ArcLengthParameters, DivideEveryKindEvenly) {
 }
 
 TEST(SampleStroke, KeepsTheSpacingAndBothEnds) {
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   for (int i = 0; i < s.size(); ++i) {
     const double spacing = 0.013;
     const Eigen::Matrix3Xd points = sample_stroke(s, i, spacing);
@@ -234,6 +234,11 @@ TEST(DegenerateCurves, StayFinite) {
       one_stroke(StrokeKind::kCircle, {o, {0, 0, 0}}),
       one_stroke(StrokeKind::kEllipse, {o, {0, 0, 0}, {0, 0, 0}}),
       one_stroke(StrokeKind::kEllipse, {o, {1, 0, 0}, {2, 0, 0}}),
+      one_stroke(StrokeKind::kEllipticArc, {o, o, o, o}),
+      one_stroke(StrokeKind::kEllipticArc, {o, Vector3d(2, 2, 3), o, o}),          // no chord
+      one_stroke(StrokeKind::kEllipticArc, {o, Vector3d(2, 2, 3), o, {3, 2, 3}}),  // straight
+      one_stroke(StrokeKind::kEllipticArc,
+                 {o, {2, 3, 3}, {2, 9, 3}, {3, 2, 3}}),  // quarter far off
       one_stroke(StrokeKind::kBezier, {o, o, o, o}),
       one_stroke(StrokeKind::kBezier, {o, o, {2, 2, 3}, {2, 2, 3}}),                 // coincident
       one_stroke(StrokeKind::kBezier, {o, {4, 2, 3}, {0, 2, 3}, {2, 2, 3}}),         // collinear

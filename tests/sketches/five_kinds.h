@@ -24,6 +24,15 @@ inline Sketch five_kinds() {
   return s;
 }
 
+/// These and an elliptic arc that goes on from the bracket.
+inline Sketch all_kinds() {
+  Sketch s = five_kinds();
+  const int f = s.add_node({-0.5, 0.6, 0.1});
+  s.add_stroke(StrokeKind::kEllipticArc, 0, f, {{-0.7, -0.1, 0.6}, {-0.5, 0.1, 0.45}},
+               {0.8, 12, 0.2, 1e-4});
+  return s;
+}
+
 /// The same sketch moved by scale * rotation * x + shift.
 inline Sketch moved(Sketch s, double scale, const Eigen::Matrix3d& rotation,
                     const Eigen::Vector3d& shift) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "sketches/io.h"
 #include "tests/sketches/five_kinds.h"
@@ -73,8 +74,10 @@ TEST(Golden, FilesOfEverySketchAreAsTheyWere) {
   if (std::getenv("SKETCHSPLAT_UPDATE_GOLDEN")) {
     fs::create_directories(kFolder);
     for (const char* extension : kExtensions)
-      std::ofstream(kFolder / (std::string("five_kinds") + extension), std::ios::binary)
-          << written(five_kinds(), extension);
+      for (const auto& [name, sketch] :
+           {std::pair("five_kinds", five_kinds()), std::pair("all_kinds", all_kinds())})
+        std::ofstream(kFolder / (std::string(name) + extension), std::ios::binary)
+            << written(sketch, extension);
   }
   ASSERT_TRUE(fs::is_directory(kFolder));
   int sketches = 0;

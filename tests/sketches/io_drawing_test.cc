@@ -76,22 +76,28 @@ void expect_arc_on_stroke(const DxfEntity& e, const Sketch& s, int i, double sca
 TEST(Dxf, HoldsEveryKindOnItsLayerAndInItsPlace) {
   Random random;
   for (int round = 0; round < 5; ++round) {
-    const Sketch s = moved(five_kinds(), 1, random.rotation(), random.point());
+    const Sketch s = moved(all_kinds(), 1, random.rotation(), random.point());
     const Dxf dxf = parse_dxf(dxf_of(s, {50, LengthUnit::kInch}));
     ASSERT_EQ(int(dxf.entities.size()), s.size());
-    const char* types[] = {"LINE", "ARC", "SPLINE", "LINE", "CIRCLE", "ELLIPSE"};
+    const char* types[] = {"LINE", "ARC", "SPLINE", "LINE", "CIRCLE", "ELLIPSE", "ELLIPSE"};
     for (int i = 0; i < s.size(); ++i) {
       const DxfEntity& e = dxf.entities[i];
       EXPECT_EQ(e.type, types[i]);
-      EXPECT_EQ(e.layer, types[i]);
+      EXPECT_EQ(e.layer, i == 6 ? "ELLIPTIC_ARC" : types[i]);
       if (e.type == "ARC" || e.type == "CIRCLE") {
         expect_arc_on_stroke(e, s, i, 50);
       } else if (e.type == "ELLIPSE") {
         const Vector3d major = e.point(11), minor = e.real(40) * e.point(210).cross(major);
-        for (const double a : {0.0, 1.0, 2.5, 4.0}) {
+        const double from = e.real(41), to = e.real(42) + (e.real(42) <= from ? 2 * M_PI : 0);
+        for (const double f : {0.0, 0.2, 0.5, 0.7, 1.0}) {
+          const double a = from + f * (to - from);
           const Vector3d p = e.point(10) + major * std::cos(a) + minor * std::sin(a);
-          EXPECT_LT(distance_to_stroke(s, i, p / 50).distance, 1e-9);
+          const ClosestPoint on = distance_to_stroke(s, i, p / 50);
+          EXPECT_LT(on.distance, 1e-9);
+          // Both ends are there, and the arc is the one between them.
+          EXPECT_NEAR(i == 6 ? on.t : f, f, 1e-6);
         }
+        EXPECT_LE(e.real(40), 1);
       } else {
         EXPECT_LT((e.point(10) / 50 - control_points(s, i).p[0]).norm(), 1e-12);
       }
@@ -105,13 +111,13 @@ TEST(Dxf, HoldsEveryKindOnItsLayerAndInItsPlace) {
 
 TEST(Svg, DrawsEveryStrokeInFourViewsAndStatesItsScale) {
   std::ostringstream out, empty;
-  write_svg(out, five_kinds(), {"a < b", 50, LengthUnit::kMillimetre});
+  write_svg(out, all_kinds(), {"a < b", 50, LengthUnit::kMillimetre});
   const std::string text = out.str();
   int paths = 0;
   for (size_t at = 0; (at = text.find("<path class=\"stroke ", at)) != std::string::npos; ++at)
     ++paths;
-  EXPECT_EQ(paths, 4 * five_kinds().size());
-  EXPECT_NE(text.find("scale 2 : 1"), std::string::npos);
+  EXPECT_EQ(paths, 4 * all_kinds().size());
+  EXPECT_NE(text.find("scale 1 : 1"), std::string::npos);
   EXPECT_NE(text.find("a &#60; b"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   write_svg(empty, Sketch());

@@ -60,7 +60,7 @@ Obj parse_obj(const std::string& text) {
 }
 
 TEST(Obj, IsOneObjectAStrokeOverSharedVertices) {
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   const Obj obj = parse_obj(obj_of(s));
   EXPECT_TRUE(obj.all_v_first);
   ASSERT_EQ(int(obj.objects.size()), s.size());
@@ -88,7 +88,7 @@ TEST(Obj, IsOneObjectAStrokeOverSharedVertices) {
 
 TEST(Obj, KeepsItsChordsWithinTheDeflection) {
   for (double scale : {1e-3, 1.0, 1e3}) {
-    const Sketch s = moved(five_kinds(), scale, Random().rotation(), {scale, 0, 0});
+    const Sketch s = moved(all_kinds(), scale, Random().rotation(), {scale, 0, 0});
     for (double deflection : {1e-2, 1e-3, 1e-5}) {
       const Obj obj = parse_obj(obj_of(s, deflection));
       const double allowed = deflection * largest_extent(s);
@@ -110,7 +110,7 @@ TEST(Obj, KeepsItsChordsWithinTheDeflection) {
 }
 
 TEST(Obj, SpendsNoMoreThanItNeeds) {
-  const Obj obj = parse_obj(obj_of(five_kinds(), 1e-3));
+  const Obj obj = parse_obj(obj_of(all_kinds(), 1e-3));
   EXPECT_EQ(obj.objects[0].second.size(), 1u) << "a line is one segment";
   for (const auto& [name, segments] : obj.objects) EXPECT_LT(segments.size(), 60u) << name;
 }
@@ -126,7 +126,7 @@ TEST(Obj, IsValidWithoutStrokesAndWithAClosedCubic) {
 }
 
 TEST(Obj, GivesOpenMeshAllItsVertices) {
-  const std::string text = obj_of(five_kinds());
+  const std::string text = obj_of(all_kinds());
   OpenMesh::PolyMesh_ArrayKernelT<> mesh;
   OpenMesh::IO::Options options;
   std::istringstream in(text);
@@ -136,7 +136,7 @@ TEST(Obj, GivesOpenMeshAllItsVertices) {
 }
 
 TEST(EdgePoints, ReadBackAsSamplesOfTheirStrokes) {
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   const double spacing = 0.05;
   std::ostringstream out;
   write_edge_points(out, s, spacing);
@@ -167,7 +167,7 @@ TEST(EdgePoints, ReadBackAsSamplesOfTheirStrokes) {
 
 TEST(EdgePoints, ReadByOpenMesh) {
   std::stringstream file;
-  write_edge_points(file, five_kinds(), 0.05);
+  write_edge_points(file, all_kinds(), 0.05);
   const std::string text = file.str();
   OpenMesh::PolyMesh_ArrayKernelT<> mesh;
   OpenMesh::IO::Options options = OpenMesh::IO::Options::Binary;

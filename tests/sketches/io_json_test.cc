@@ -69,11 +69,11 @@ void expect_same(const Sketch& a, const Sketch& b) {
 }
 
 TEST(SketchJson, ReadsBackBitForBit) {
-  expect_same(read(text_of(five_kinds())), five_kinds());
+  expect_same(read(text_of(all_kinds())), all_kinds());
   expect_same(read(text_of(Sketch())), Sketch());
   Random random;
   for (double scale : {1e-100, 1e-3, 1e3, 1e100}) {
-    const Sketch s = moved(five_kinds(), scale, random.rotation(), {0, 0, 0});
+    const Sketch s = moved(all_kinds(), scale, random.rotation(), {0, 0, 0});
     expect_same(read(text_of(s)), s);
   }
   Sketch s = five_kinds();

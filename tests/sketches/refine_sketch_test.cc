@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "sketches/closest.h"
+#include "sketches/conic.h"
 #include "sketches/curve.h"
 
 namespace sketchsplat {
@@ -76,6 +78,113 @@ TEST(RefineSketch, EveryKindReachesACurveOfItsKind) {
       const Matrix3Xd curve = sample_stroke(truth, k, 1e-3);
       EXPECT_LT((curve.colwise() - p).colwise().norm().minCoeff(), 6e-4);
     }
+}
+
+TEST(RefineSketch, AnEllipticArcReachesItsEllipse) {
+  const Vector3d centre(0.1, 0.2, 0.3), p(0.5, 0.1, 0), q(-0.1, 0.3, 0.1);
+  const auto arc_of = [](const ControlPoints& c) {
+    Sketch s;
+    const int a = s.add_node(c.p[0]), b = s.add_node(c.p[3]);
+    s.add_stroke(StrokeKind::kEllipticArc, a, b, {c.p[1], c.p[2]});
+    return s;
+  };
+  for (double turn : {1.2, 3.0, 5.0}) {
+    const ControlPoints start = elliptic_arc(centre, p, q, -0.2, turn);
+    const Sketch truth = arc_of(
+        elliptic_arc(centre, 1.02 * p + 0.01 * q, 0.97 * q + Vector3d(0, 0, 0.01), -0.2, turn));
+    const Matrix3Xd curve = sample_stroke(truth, 0, 1e-3);
+    Sketch moved = arc_of(start);
+    for (int round = 0; round < 6; ++round) {
+      const SampleLayout layout = plan_samples(moved, 0.03);
+      const Samples now = evaluate_samples(moved, layout);
+      Matrix3Xd target = now.position;
+      for (int i = 0; i < target.cols(); ++i)
+        target.col(i) = distance_to_stroke(truth, 0, now.position.col(i)).position;
+      moved = refine_sketch(moved, layout, wish(now, target)).sketch;
+    }
+    for (double t : {0.05, 0.3, 0.5, 0.7, 0.95}) {
+      Vector3d x, d;
+      evaluate_stroke(moved, 0, t, &x, &d);
+      EXPECT_LT((curve.colwise() - x).colwise().norm().minCoeff(), 1e-3) << turn << " at " << t;
+    }
+  }
+}
+
+// A wave as three cubics with tangents that miss one another, and targets with noise.
+struct Wave {
+  Sketch sketch;
+  static Vector3d at(double x) { return {x, 0.3 * std::sin(2 * x), 0.1 * x * x}; }
+  static Vector3d slope(double x) { return {1, 0.6 * std::cos(2 * x), 0.2 * x}; }
+  Wave() {
+    for (int k = 0; k <= 3; ++k) sketch.add_node(at(k));
+    for (int k = 0; k < 3; ++k) {
+      const double kink = 0.04;  // about 2 deg either way
+      sketch.add_stroke(StrokeKind::kBezier, k, k + 1,
+                        {at(k) + slope(k) / 3 + Vector3d(0, kink / 3, 0),
+                         at(k + 1) - slope(k + 1) / 3 + Vector3d(0, kink / 3, 0)});
+    }
+  }
+};
+Matrix3Xd noisy_targets(const Samples& now, double sigma) {
+  Matrix3Xd target = now.position;
+  for (int i = 0; i < target.cols(); ++i) {
+    double x = target(0, i);
+    for (int k = 0; k < 20; ++k)
+      x += (now.position.col(i) - Wave::at(x)).dot(Wave::slope(x)) / Wave::slope(x).squaredNorm();
+    target.col(i) = Wave::at(x) + sigma * Vector3d(0, std::sin(37. * i), std::sin(53. * i + 1));
+  }
+  return target;
+}
+double rms_off_wave(const Sketch& s) {
+  double sum = 0;
+  int n = 0;
+  for (int k = 0; k < s.size(); ++k)
+    for (int i = 0; i <= 50; ++i, ++n) {
+      Vector3d p, d;
+      evaluate_stroke(s, k, i / 50.0, &p, &d);
+      double x = p.x();
+      for (int it = 0; it < 20; ++it)
+        x += (p - Wave::at(x)).dot(Wave::slope(x)) / Wave::slope(x).squaredNorm();
+      sum += (p - Wave::at(x)).squaredNorm();
+    }
+  return std::sqrt(sum / n);
+}
+
+TEST(RefineSketch, SmoothJointsOfANoisySplineEndBelowADegreeAndCostNothing) {
+  const Wave wave;
+  const double degree = M_PI / 180, sigma = 0.006;
+  RefineSketchOptions smooth;
+  smooth.smooth_angle = 8 * degree;
+  smooth.smooth_weight = std::pow(sigma / (0.2 * degree), 2);
+  Sketch with = wave.sketch, without = wave.sketch;
+  for (int round = 0; round < 4; ++round)
+    for (Sketch* s : {&with, &without}) {
+      const SampleLayout layout = plan_samples(*s, 0.02);
+      const Samples now = evaluate_samples(*s, layout);
+      *s = refine_sketch(*s, layout, wish(now, noisy_targets(now, sigma)),
+                         s == &with ? smooth : RefineSketchOptions())
+               .sketch;
+    }
+  const auto worst = [](const Sketch& s) {
+    double angle = 0;
+    for (const SmoothJoint& j : find_smooth_joints(s, M_PI)) angle = std::max(angle, j.angle);
+    return angle;
+  };
+  ASSERT_EQ(find_smooth_joints(with, M_PI).size(), 2u);
+  EXPECT_GT(worst(wave.sketch), 2 * degree);
+  EXPECT_GT(worst(without), 1 * degree) << "else this test shows nothing";
+  EXPECT_LT(worst(with), 1 * degree);
+  EXPECT_LT(rms_off_wave(with), 1.02 * rms_off_wave(without));
+}
+
+TEST(RefineSketch, ACornerIsNoSmoothJoint) {
+  Wave wave;
+  wave.sketch.handles.col(2) += Vector3d(0, 0, 0.3);  // some 40 deg
+  EXPECT_EQ(find_smooth_joints(wave.sketch, 8 * M_PI / 180).size(), 1u);
+  // Nor is one where a third stroke begins.
+  const int n = wave.sketch.add_node({2, 2, 2});
+  wave.sketch.add_stroke(StrokeKind::kLine, 2, n, {});
+  EXPECT_EQ(find_smooth_joints(wave.sketch, 8 * M_PI / 180).size(), 0u);
 }
 
 TEST(RefineSketch, StrokesThatShareANodeStayJoined) {

@@ -14,7 +14,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 TEST(PlanSamples, CountsByLengthAndAddsUpToIt) {
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   const double spacing = 0.017;
   const SampleLayout layout = plan_samples(s, spacing);
   ASSERT_EQ(int(layout.first.size()), s.size() + 1);
@@ -35,16 +35,16 @@ TEST(PlanSamples, CountsByLengthAndAddsUpToIt) {
 }
 
 TEST(PlanSamples, GivesEveryStrokeOneAtLeast) {
-  const SampleLayout layout = plan_samples(five_kinds(), 1e6);
-  EXPECT_EQ(layout.size(), 6);
+  const SampleLayout layout = plan_samples(all_kinds(), 1e6);
+  EXPECT_EQ(layout.size(), 7);
   EXPECT_EQ(plan_samples(Sketch(), 1.0).size(), 0);
   EXPECT_EQ(plan_samples(Sketch(), 1.0).first.size(), 1u);
 }
 
 TEST(PlanSamples, ScalesWithTheUnitOfTheScene) {
-  const SampleLayout one = plan_samples(five_kinds(), 0.05);
+  const SampleLayout one = plan_samples(all_kinds(), 0.05);
   for (double scale : {1e-3, 1e3}) {
-    const Sketch s = moved(five_kinds(), scale, Eigen::Matrix3d::Identity(), {0, 0, 0});
+    const Sketch s = moved(all_kinds(), scale, Eigen::Matrix3d::Identity(), {0, 0, 0});
     const SampleLayout layout = plan_samples(s, 0.05 * scale);
     ASSERT_EQ(layout.size(), one.size());
     for (int i = 0; i < one.size(); ++i) EXPECT_NEAR(layout.t[i], one.t[i], 1e-9);
@@ -52,13 +52,13 @@ TEST(PlanSamples, ScalesWithTheUnitOfTheScene) {
 }
 
 TEST(EvaluateSamples, GivesUnitTangentsAndZeroWhereTheCurveStandsStill) {
-  Sketch s = five_kinds();
+  Sketch s = all_kinds();
   const int n = s.add_node({7, 7, 7});
   s.add_stroke(StrokeKind::kLine, n, n, {});
   const SampleLayout layout = plan_samples(s, 0.1);
   const Samples samples = evaluate_samples(s, layout);
   for (int i = 0; i < layout.size(); ++i)
-    EXPECT_NEAR(samples.tangent.col(i).norm(), layout.stroke[i] == 6 ? 0 : 1, 1e-14);
+    EXPECT_NEAR(samples.tangent.col(i).norm(), layout.stroke[i] == 7 ? 0 : 1, 1e-14);
 }
 
 // A scalar of everything: weights for positions and tangents, and a square to be non-linear.
@@ -105,7 +105,7 @@ void expect_central_differences(const Sketch& sketch, double tolerance) {
 }
 
 TEST(EvaluateSamplesBackward, AgreesWithCentralDifferencesOverSharedNodes) {
-  expect_central_differences(five_kinds(), 1e-7);
+  expect_central_differences(all_kinds(), 1e-7);
 }
 
 TEST(EvaluateSamplesBackward, AgreesWithCentralDifferencesForAxisAlignedParts) {
@@ -132,7 +132,7 @@ TEST(EvaluateSamplesBackward, KeepsTheApexOfAStraightArcAlive) {
 TEST(EvaluateSamplesBackward, AgreesWithJetsOfTheWholeChain) {
   using J = ceres::Jet<double, 1>;
   Random random;
-  const Sketch sketch = moved(five_kinds(), 1.7, random.rotation(), random.point());
+  const Sketch sketch = moved(all_kinds(), 1.7, random.rotation(), random.point());
   const SampleLayout layout = plan_samples(sketch, 0.07);
   const Objective f(layout.size());
   const SketchGradient g =
@@ -189,6 +189,10 @@ TEST(EvaluateSamplesBackward, StaysFiniteForDegenerateStrokes) {
   s.add_stroke(StrokeKind::kArc, a, b, {{0.3, 1e-9, 0}});
   s.add_stroke(StrokeKind::kBezier, a, a, {{0, 0, 0}, {0, 0, 0}});
   s.add_stroke(StrokeKind::kBezier, a, b, {{1, 1, 0}, {0, 1, 0}});  // cusp in the middle
+  s.add_stroke(StrokeKind::kEllipticArc, a, a, {{0, 0, 0}, {0, 0, 0}});
+  s.add_stroke(StrokeKind::kEllipticArc, a, a, {{1, 0, 0}, {0.6, 0, 0}});
+  s.add_stroke(StrokeKind::kEllipticArc, a, b, {{0.3, 0, 0}, {0.4, 0, 0}});
+  s.add_stroke(StrokeKind::kEllipticArc, a, b, {{0.5, 1e-9, 0}, {0.5, 1, 0}});
   s.add_stroke(StrokeKind::kCircle, -1, -1, {{0, 0, 0}, {0, 0, 0}});
   s.add_stroke(StrokeKind::kEllipse, -1, -1, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
   for (double spacing : {10.0, 0.01}) {

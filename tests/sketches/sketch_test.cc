@@ -19,7 +19,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 TEST(Validate, HasNothingToSayAboutASoundSketch) {
-  EXPECT_THAT(validate(five_kinds()), IsEmpty());
+  EXPECT_THAT(validate(all_kinds()), IsEmpty());
   EXPECT_THAT(validate(Sketch()), IsEmpty());
 }
 
@@ -112,7 +112,7 @@ TEST(Validate, AcceptsAClosedCubicButNotAPoint) {
 
 TEST(Validate, AcceptsAnySizeOfAPart) {
   for (double scale : {1e-12, 1e-3, 1e3, 1e12})
-    EXPECT_THAT(validate(moved(five_kinds(), scale, Random().rotation(), {0, 0, 0})), IsEmpty());
+    EXPECT_THAT(validate(moved(all_kinds(), scale, Random().rotation(), {0, 0, 0})), IsEmpty());
 }
 
 TEST(KeepStrokes, DropsWhatNobodyUsesAndKeepsTheRestBitForBit) {

@@ -76,6 +76,7 @@ GeomAbs_CurveType type_of(StrokeKind kind) {
     case StrokeKind::kCircle:
       return GeomAbs_Circle;
     case StrokeKind::kEllipse:
+    case StrokeKind::kEllipticArc:
       return GeomAbs_Ellipse;
     case StrokeKind::kBezier:
       break;
@@ -119,10 +120,10 @@ void expect_same_curves(const Sketch& s, const Shape& shape, double scale) {
 }
 
 TEST(Step, ReadsBackInOpenCascadeCurveByCurve) {
-  const Shape shape = open_step(step_of(five_kinds()));
+  const Shape shape = open_step(step_of(all_kinds()));
   ASSERT_TRUE(shape.read);
   EXPECT_EQ(shape.roots, 1) << "one product";
-  expect_same_curves(five_kinds(), shape, 1);
+  expect_same_curves(all_kinds(), shape, 1);
 }
 
 TEST(Step, ReadsBackTurnedMovedAndInOtherUnits) {
@@ -130,7 +131,7 @@ TEST(Step, ReadsBackTurnedMovedAndInOtherUnits) {
   for (double unit : {1e-3, 1.0, 1e3})
     for (double scale : {1.0, 1e-3, 1e3}) {
       if (unit * scale < 1e-3 || unit * scale > 1e3) continue;  // a part of 1 micron to 1 m
-      const Sketch s = moved(five_kinds(), unit, random.rotation(), unit * random.point());
+      const Sketch s = moved(all_kinds(), unit, random.rotation(), unit * random.point());
       SCOPED_TRACE(testing::Message() << "unit " << unit << " scale " << scale);
       const Shape shape = open_step(step_of(s, {"part", scale}));
       ASSERT_TRUE(shape.read);
@@ -139,7 +140,7 @@ TEST(Step, ReadsBackTurnedMovedAndInOtherUnits) {
 }
 
 TEST(Step, HasTheBoundingBoxOfTheSketch) {
-  const Sketch s = five_kinds();
+  const Sketch s = all_kinds();
   const Shape shape = open_step(step_of(s, {"part", 50}));
   Bnd_Box bounds;
   BRepBndLib::AddOptimal(shape.shape, bounds, Standard_False, Standard_False);
@@ -249,7 +250,7 @@ TEST(Step, IsValidWithoutStrokes) {
 }
 
 TEST(Step, EscapesTheNameOfThePart) {
-  const std::string text = step_of(five_kinds(), {"Bob's caf\xc3\xa9 \\ \xf0\x9f\x98\x80\xff", 1});
+  const std::string text = step_of(all_kinds(), {"Bob's caf\xc3\xa9 \\ \xf0\x9f\x98\x80\xff", 1});
   const std::string name = R"('Bob''s caf\X2\00E9\X0\ \\ \X4\0001F600\X0\\X2\FFFD\X0\')";
   EXPECT_THAT(text, HasSubstr("PRODUCT(" + name + "," + name));
   EXPECT_TRUE(open_step(text).read);
@@ -257,7 +258,7 @@ TEST(Step, EscapesTheNameOfThePart) {
 }
 
 TEST(Step, WritesEveryRealWithAPointAndColoursEveryEdge) {
-  const Sketch s = moved(five_kinds(), 1e-9, Eigen::Matrix3d::Identity(), {1, 0, 0});
+  const Sketch s = moved(all_kinds(), 1e-9, Eigen::Matrix3d::Identity(), {1, 0, 0});
   const std::string text = step_of(s);
   const std::regex point("CARTESIAN_POINT\\('',\\(([^)]*)\\)\\)");
   const std::regex real("-?[0-9]+\\.[0-9]*(E[-+]?[0-9]+)?");
@@ -273,7 +274,7 @@ TEST(Step, WritesEveryRealWithAPointAndColoursEveryEdge) {
 }
 
 TEST(Step, RefersOnlyToEntitiesThatAreThere) {
-  const std::string text = step_of(five_kinds());
+  const std::string text = step_of(all_kinds());
   const std::regex define("(^|\n)#([0-9]+)="), refer("#([0-9]+)[^0-9=]");
   std::set<int> defined;
   for (std::sregex_iterator it(text.begin(), text.end(), define), end; it != end; ++it)
@@ -291,7 +292,7 @@ TEST(Step, OpensInFreeCad) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "sketchsplat_freecad";
   fs::create_directories(folder);
-  std::ofstream(folder / "part.step") << step_of(five_kinds());
+  std::ofstream(folder / "part.step") << step_of(all_kinds());
   std::ofstream(folder / "count.py")
       << "import Part\ns = Part.Shape()\ns.read('" << (folder / "part.step").string()
       << "')\nkinds = sorted(e.Curve.TypeId.split('::')[1] for e in s.Edges)\n"

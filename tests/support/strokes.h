@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sketches/conic.h"
 #include "sketches/curve.h"
 #include "tests/support/wireframe.h"
 
@@ -24,6 +25,13 @@ inline int add_bezier(Sketch* s, const Eigen::Vector3d& a, const Eigen::Vector3d
                       const Eigen::Vector3d& h1, const Eigen::Vector3d& b) {
   const int begin = s->add_node(a), end = s->add_node(b);
   return s->add_stroke(StrokeKind::kBezier, begin, end, {h0, h1});
+}
+/// Of centre + cos(t) p + sin(t) q.
+inline int add_elliptic_arc(Sketch* s, const Eigen::Vector3d& centre, const Eigen::Vector3d& p,
+                            const Eigen::Vector3d& q, double t0, double t1) {
+  const ControlPoints c = elliptic_arc(centre, p, q, t0, t1);
+  const int begin = s->add_node(c.p[0]), end = s->add_node(c.p[3]);
+  return s->add_stroke(StrokeKind::kEllipticArc, begin, end, {c.p[1], c.p[2]});
 }
 /// `axis`: unit normal times radius.
 inline int add_circle(Sketch* s, const Eigen::Vector3d& centre, const Eigen::Vector3d& axis) {

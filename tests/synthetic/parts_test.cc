@@ -169,6 +169,9 @@ std::map<std::string, int> kinds(const Truth& truth) {
 TEST(Parts, EdgesAreOfTheKindsThatTheirMakingGives) {
   using Kinds = std::map<std::string, int>;
   EXPECT_EQ(kinds(truth_of("oblique-hole", 1)), (Kinds{{"Line", 12}, {"Ellipse", 2}}));
+  // The cylinder's seam cuts one of the arcs.
+  EXPECT_EQ(kinds(truth_of("ridge-cylinder", 1)),
+            (Kinds{{"Circle", 1}, {"Ellipse", 3}, {"Line", 1}}));
   EXPECT_EQ(kinds(truth_of("ellipse-plate", 1)), (Kinds{{"Line", 8}, {"Ellipse", 4}}));
   EXPECT_EQ(kinds(truth_of("cross-drilled", 1)), (Kinds{{"Circle", 3}, {"BSpline", 2}}));
   EXPECT_EQ(kinds(truth_of("spline-plate", 1)), (Kinds{{"Circle", 2}, {"BSpline", 2}}));

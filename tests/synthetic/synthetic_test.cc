@@ -10,6 +10,7 @@
 #include "datasets/synthetic/curve_kind.h"
 #include "datasets/synthetic/parts.h"
 #include "datasets/synthetic/synthesize.h"
+#include "sketches/closest.h"
 #include "sketches/curve.h"
 
 namespace sketchsplat {
@@ -76,6 +77,23 @@ TEST(Truth, FilletsLeaveNoEdgeAlongTheirTangentSeams) {
   for (const TruthCurve& curve : truth.curves)
     EXPECT_LT((curve.points.colwise() - curve.points.col(0)).row(2).cwiseAbs().maxCoeff(), 1e-9)
         << "a vertical edge is left";
+}
+
+TEST(Truth, ArcsOfEllipsesAreStrokesOfTheirKindOnTheTrueCurve) {
+  for (const char* part : {"ridge-cylinder", "ellipse-plate"}) {
+    const Truth truth = truth_of(part);
+    EXPECT_TRUE(validate(truth.sketch).empty()) << part;
+    int arcs = 0;
+    for (int i = 0; i < truth.sketch.size(); ++i) {
+      if (truth.sketch.strokes[i].kind != StrokeKind::kEllipticArc) continue;
+      ++arcs;
+      const TruthCurve& curve = truth.curves[truth.curve_of_stroke[i]];
+      EXPECT_EQ(curve.type, "Ellipse");
+      for (int k = 0; k < curve.points.cols(); ++k)
+        EXPECT_LT(distance_to_stroke(truth.sketch, i, curve.points.col(k)).distance, 1e-5) << part;
+    }
+    EXPECT_GE(arcs, 2) << part;
+  }
 }
 
 TEST(Truth, SeamOfACylinderIsNoEdgeAndAnObliqueCutIsAnEllipse) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "sketches/conic.h"
 #include "tests/topology/build_sketch.h"
 #include "topology/plain_curve.h"
 #include "topology/simplify.h"
@@ -82,6 +83,11 @@ Sketch random_sketch(int seed, int curves) {
       s.add_stroke(StrokeKind::kEllipse, -1, -1, {last, u, v * uniform(0.5, 1.1)}, evidence());
       s.add_stroke(StrokeKind::kCircle, -1, -1, {next, v / 2}, evidence());
       s.add_stroke(StrokeKind::kCircle, -1, -1, {next + noise(), v / 2}, evidence());
+      for (const auto& [from, to] : {std::pair(0.0, 5 * cut), std::pair(5 * cut + 0.05, 5.5)}) {
+        const ControlPoints c = elliptic_arc(h1, u, 0.6 * v, from, to);
+        const int begin = s.add_node(c.p[0] + noise()), end = s.add_node(c.p[3] + noise());
+        s.add_stroke(StrokeKind::kEllipticArc, begin, end, {c.p[1] + noise(), c.p[2]}, evidence());
+      }
     }
     if (seed % 2) {
       const Vector3d p = point(120);
