@@ -2,13 +2,14 @@
 #include "pipelines/polish.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "pipelines/observe.h"
 #include "sketches/refine_sketch.h"
 
 namespace sketchsplat {
 
-Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options) {
+Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options,
+              Observation* last) {
   Sketch s = sketch;
   double sigma = 0;
   for (int round = 0; round < options.rounds && s.size() > 0; ++round) {
@@ -17,13 +18,14 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     const bool coarse = round < std::min(2, options.rounds / 2);
     match.reach_px = coarse ? options.reach_px : std::max(options.final_reach_px, 4 * sigma);
     match.max_bias = coarse ? 0 : std::max(options.bias_px, 2 * sigma);
-    const Observation o = observe(s, world, match, options.spacing_px, 1);
+    Observation o = observe(s, world, match, options.spacing_px, 1);
     sigma = o.matches.sigma_px;
     const RefineSketchResult refined =
         refine_sketch(s, o.layout, {o.matches.information, o.matches.slope});
     const Samples moved = evaluate_samples(refined.sketch, o.layout);
     const double step = (moved.position - o.samples.position).colwise().norm().maxCoeff();
     s = refined.sketch;
+    if (last) *last = std::move(o);
     if (!coarse && step < options.stop_px * world.footprint) break;
   }
   return s;
