@@ -4,9 +4,7 @@
 #include <vector>
 
 #include "pipelines/observe.h"
-#include "pipelines/run_report.h"
 #include "sketches/relations.h"
-#include "sketches/sketch.h"
 
 namespace sketchsplat {
 
@@ -16,13 +14,6 @@ struct RegularizeOptions {
   double sigma_px = 0.15;   ///< [px] least standard deviation of what all views say of a place
   double soft_px = 0.05;    ///< [px] standard deviation of a relation at the most
   double soft_share = 0.1;  ///< and as a share of that of the stroke itself
-};
-
-/// Strokes that have one quantity in common: a direction, a plane, an axis, a radius; or two
-/// directions with a right angle between them.
-struct Regularity {
-  RelationKind kind = RelationKind::kParallel;
-  std::vector<int> strokes;  ///< ascending
 };
 
 struct Regularized {

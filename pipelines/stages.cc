@@ -112,6 +112,7 @@ void count_regularities(const Regularized& regular, RunReport* report) {
     report->counts.push_back({std::string("regular_") + relation_name(kind), double(count)});
   }
   report->counts.push_back({"regular_nats_saved", regular.nats_saved});
+  report->regularities = regular.kept;
 }
 
 // Chains of strokes in as few words as their edgels allow.

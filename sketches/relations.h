@@ -49,6 +49,12 @@ struct Relations {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the planes' offsets
 };
 
+/// Strokes that keep to one shared quantity, or to two directions with a right angle between them.
+struct Regularity {
+  RelationKind kind = RelationKind::kParallel;
+  std::vector<int> strokes;  ///< ascending
+};
+
 /// Blocks of three numbers that a relation reads: b < N is node b, b < N + M handle b - N, others
 /// are shared quantities.
 std::vector<int> relation_blocks(const Sketch& sketch, const Relations& relations,
