@@ -23,18 +23,28 @@ constexpr double kGate = 4;           // [sigma] beyond which nothing is tried
 constexpr double kNews = 2;           // [sigma of the relation] less uncertain: known already
 constexpr double kLeastSigma = 1e-4;  // [px] of a relation
 
-// The quadratics in squared standard deviations: edgels scatter by `scatter`, and a place is known
-// to `floor` at best, however many views see it. Lengths in world units; information in px^2 /
-// world^2.
-SampleQuadratics whitened(const SampleQuadratics& q, double scatter_px, double floor) {
-  SampleQuadratics out = q;
+// [px^2] What all views together leave unknown of a place on a stroke: never less than `floor`. And
+// a view may be wrong about the whole of a stroke, by its bias: many places are no better than one
+// then, so that of each is multiplied by their number.
+double unknown_of(const StrokeStats& s, double floor_px) {
+  const double aside = s.views > 0 ? s.bias_px * s.bias_px / s.views : 0;
+  return floor_px * floor_px + s.samples * aside;
+}
+
+// The quadratics in squared standard deviations of the edgels.
+SampleQuadratics whitened(const Observation& seen, double floor_px, double footprint) {
+  const Matches& q = seen.matches;
+  SampleQuadratics out{q.information, q.slope};
   for (size_t i = 0; i < q.information.size(); ++i) {
+    const StrokeStats& stroke = seen.strokes[seen.layout.stroke[i]];
+    const double unknown = unknown_of(stroke, floor_px) * footprint * footprint;
+    const double scatter_px = std::max(q.sigma_px, stroke.rms_px);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(q.information[i]);
     const Vector3d values = es.eigenvalues();
     Vector3d shrink = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
       if (values[k] > 1e-6 * values[2])
-        shrink[k] = 1 / (scatter_px * scatter_px + floor * floor * values[k]);
+        shrink[k] = 1 / (scatter_px * scatter_px + unknown * values[k]);
     const Eigen::Matrix3d& v = es.eigenvectors();
     out.information[i] =
         v * shrink.cwiseProduct(values.cwiseMax(0)).asDiagonal() * v.transpose();
@@ -499,8 +509,7 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
   Regularized out;
   out.sketch = sketch;
   if (sketch.size() == 0) return out;
-  SampleQuadratics q = whitened({seen.matches.information, seen.matches.slope},
-                                seen.matches.sigma_px, options.sigma_px * footprint);
+  SampleQuadratics q = whitened(seen, options.sigma_px, footprint);
   const Samples now = evaluate_samples(sketch, seen.layout);
   for (int i = 0; i < seen.layout.size(); ++i)
     q.slope.col(i) +=
