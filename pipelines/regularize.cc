@@ -87,13 +87,7 @@ class Finder {
   }
 
   bool ok() const { return gaussian_.ok(); }
-  void find_directions();
-  void find_right_angles();
-  void find_planes();
-  void find_axes();
-  void find_radii();
-
-  const Sketch& sketch() const { return s_; }
+  void find(int stages);  // the first of five
   double gain() const { return gain_; }
   Relations kept() const;
   std::vector<Regularity> regularities() const;
@@ -106,6 +100,11 @@ class Finder {
     bool useful = false;       // to more than one stroke
   };
 
+  void find_directions();
+  void find_right_angles();
+  void find_planes();
+  void find_axes();
+  void find_radii();
   void apply(const VectorXd& move);
   int add_shared(const SharedQuantity& quantity, double range);
   Gaussian::Rows sparse(const RelationRows& rows, bool own) const;
@@ -115,12 +114,14 @@ class Finder {
   Candidate along(int stroke);
   void group(std::vector<Candidate> candidates, const SharedQuantity& blank);
   bool is_conic(int stroke) const;
+  bool lies_in(int stroke, const Direction& normal, const std::set<int>& held) const;
   bool is_usable(int stroke) const;
   std::vector<Candidate> points_across(const Direction& direction);
 
   Sketch s_;
   Relations relations_;  // list: all that were taken, also those that only define a quantity
-  std::vector<bool> used_;  // by shared quantity: more than one stroke holds it
+  std::vector<bool> used_;           // by shared quantity: more than one stroke holds it
+  std::vector<std::set<int>> held_;  // by plane: its points; by axis and radius: their strokes
   Gaussian gaussian_;
   RegularizeOptions options_;
   double unit_;
@@ -159,6 +160,7 @@ void Finder::apply(const VectorXd& move) {
 int Finder::add_shared(const SharedQuantity& quantity, double range) {
   relations_.shared.push_back(quantity);
   used_.push_back(false);
+  held_.emplace_back();
   for (int k = 0; k < 3; ++k) gaussian_.add_variable(range * range);
   return int(relations_.shared.size()) - 1;
 }
@@ -191,7 +193,8 @@ double Finder::own_sigma(const Relation& relation) {
 }
 
 // Sets the relations' sigmas, and asks what they cost and save. `naming`: log of the number of
-// candidates among which they were found.
+// candidates among which they were found. What a relation tells, log(range / deviation), must
+// exceed the price of a parameter, lest chance agreement pays.
 Trial Finder::weigh(std::vector<Relation>* relations, double range_px, double naming) {
   Trial trial;
   std::vector<Eigen::Triplet<double>> entries;
@@ -219,8 +222,8 @@ Trial Finder::weigh(std::vector<Relation>* relations, double range_px, double na
     const double deviation = std::sqrt(std::max(0.0, es.eigenvalues()[i]));  // [sigma]
     if (!(deviation > kNews)) continue;
     trial.news = true;
-    trial.gain += std::min(options_.price,
-                           std::log(range_px / (deviation * sigma)) - naming / k);
+    const double told = std::log(range_px / (deviation * sigma)) - naming / k;
+    trial.gain += std::min(options_.price, told - options_.price);
   }
   s.diagonal().array() += 1;
   trial.nats = 0.5 * trial.residual.dot(s.ldlt().solve(trial.residual));
@@ -364,12 +367,17 @@ void Finder::group(std::vector<Candidate> candidates, const SharedQuantity& blan
     std::vector<Relation> one = {candidates[a].relation};
     one[0].shared = shared;
     take(one, weigh(&one, candidates[a].range, 0), false);
+    const auto hold = [&](const Relation& r) {
+      held_[shared].insert(r.stroke >= 0 ? r.stroke : r.point);
+    };
+    hold(one[0]);
     for (size_t b : near) {
       one = {candidates[b].relation};
       one[0].shared = shared;
       const Trial trial = weigh(&one, candidates[b].range, naming);
       if (trial.pays()) take(one, trial, true);
       taken[b] = trial.pays() || !trial.news;
+      if (taken[b]) hold(one[0]);
     }
   }
 }
@@ -458,6 +466,14 @@ void Finder::find_radii() {
   group(candidates, {SharedKind::kRadius, -1, Vector3d::Zero()});
 }
 
+void Finder::find(int stages) {
+  if (stages > 0) find_directions();
+  if (stages > 1) find_right_angles();
+  if (stages > 2) find_planes();
+  if (stages > 3) find_axes();
+  if (stages > 4) find_radii();
+}
+
 Relations Finder::kept() const {
   Relations out = relations_;
   out.list.clear();
@@ -466,38 +482,49 @@ Relations Finder::kept() const {
   return out;
 }
 
+// Does the stroke lie in the plane whose points are `held`?
+bool Finder::lies_in(int stroke, const Direction& normal, const std::set<int>& held) const {
+  const Stroke& s = s_.strokes[stroke];
+  const int handle = int(s_.nodes.cols()) + s.handle;
+  if (is_conic(stroke) && std::count(normal.strokes.begin(), normal.strokes.end(), stroke) == 0)
+    return false;
+  if (is_closed(s.kind)) return held.count(handle) > 0;
+  if (s.kind == StrokeKind::kBezier && !(held.count(handle) && held.count(handle + 1)))
+    return false;
+  return held.count(s.begin) && held.count(s.end);
+}
+
 std::vector<Regularity> Finder::regularities() const {
-  const int nodes = int(s_.nodes.cols());
   std::vector<Regularity> out;
-  const Relations kept = this->kept();
-  const auto strokes_of = [&](int shared, RelationKind kind) {
-    std::set<int> strokes;
-    for (const Relation& r : kept.list) {
-      if (r.shared != shared || r.kind != kind) continue;
-      if (r.stroke >= 0) strokes.insert(r.stroke);
-      for (int i = 0; r.point >= 0 && i < s_.size(); ++i) {
-        const Stroke& s = s_.strokes[i];
-        const int handle = r.point - nodes - s.handle;
-        if (s.begin == r.point || s.end == r.point ||
-            (s.handle >= 0 && handle >= 0 && handle < num_handles(s.kind)))
-          strokes.insert(i);
-      }
-    }
-    return std::vector<int>(strokes.begin(), strokes.end());
+  const auto add = [&](RelationKind kind, std::set<int> strokes) {
+    if (strokes.size() > 1) out.push_back({kind, {strokes.begin(), strokes.end()}});
   };
-  constexpr RelationKind kOf[] = {RelationKind::kParallel, RelationKind::kCoplanar,
-                                  RelationKind::kCoaxial, RelationKind::kEqualRadius};
-  for (int q = 0; q < int(kept.shared.size()); ++q) {
-    const RelationKind kind = kOf[int(kept.shared[q].kind)];
-    const std::vector<int> strokes = strokes_of(q, kind);
-    if (strokes.size() > 1) out.push_back({kind, strokes});
+  const auto along = [&](int shared) -> const Direction& {
+    return *std::find_if(directions_.begin(), directions_.end(),
+                         [&](const Direction& d) { return d.shared == shared; });
+  };
+  for (int q = 0; q < int(relations_.shared.size()); ++q) {
+    if (!used_[q]) continue;
+    const SharedQuantity& shared = relations_.shared[q];
+    if (shared.kind == SharedKind::kDirection) {
+      const std::vector<int>& strokes = along(q).strokes;
+      add(RelationKind::kParallel, {strokes.begin(), strokes.end()});
+    } else if (shared.kind == SharedKind::kPlane) {
+      std::set<int> strokes;
+      for (int i = 0; i < s_.size(); ++i)
+        if (lies_in(i, along(shared.direction), held_[q])) strokes.insert(i);
+      add(RelationKind::kCoplanar, strokes);
+    } else {
+      add(shared.kind == SharedKind::kAxis ? RelationKind::kCoaxial : RelationKind::kEqualRadius,
+          held_[q]);
+    }
   }
-  for (const Relation& r : kept.list) {
+  for (const Relation& r : relations_.list) {
     if (r.kind != RelationKind::kPerpendicular) continue;
     std::set<int> strokes;
     for (int q : {r.shared, r.other})
-      for (int i : strokes_of(q, RelationKind::kParallel)) strokes.insert(i);
-    out.push_back({r.kind, {strokes.begin(), strokes.end()}});
+      strokes.insert(along(q).strokes.begin(), along(q).strokes.end());
+    add(r.kind, strokes);
   }
   return out;
 }
@@ -515,22 +542,24 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
     q.slope.col(i) +=
         q.information[i] * (now.position.col(i) - seen.samples.position.col(i));
   const SketchQuadratic all = sketch_quadratic(sketch, seen.layout, q);
-  Finder finder(sketch, all, footprint, options);
-  if (!finder.ok()) return out;
-  finder.find_directions();
-  finder.find_right_angles();
-  finder.find_planes();
-  finder.find_axes();
-  finder.find_radii();
-  Relations relations = finder.kept();
-  if (relations.list.empty()) return out;
   const RefineSketchResult free = refine_sketch(sketch, seen.layout, q);
-  const RefineSketchResult bound = refine_sketch(sketch, seen.layout, q, {}, &relations);
-  out.nats_saved = finder.gain() - (bound.final_cost - free.final_cost) / 2;
-  if (!(out.nats_saved > 0)) return out;
-  out.sketch = bound.sketch;
-  out.kept = finder.regularities();
-  out.relations = int(relations.list.size());
+  // What was decided on a linear view is verified; if it fails, by those that say more of one
+  // stroke than its edgels do, most likely: the last ones.
+  for (int stages = 5; stages > 0; --stages) {
+    Finder finder(sketch, all, footprint, options);
+    if (!finder.ok()) return out;
+    finder.find(stages);
+    Relations relations = finder.kept();
+    if (relations.list.empty()) return out;
+    const RefineSketchResult bound = refine_sketch(sketch, seen.layout, q, {}, &relations);
+    const double saved = finder.gain() - (bound.final_cost - free.final_cost) / 2;
+    if (!(saved > 0)) continue;
+    out.nats_saved = saved;
+    out.sketch = bound.sketch;
+    out.kept = finder.regularities();
+    out.relations = int(relations.list.size());
+    return out;
+  }
   return out;
 }
 

@@ -19,17 +19,19 @@ struct RegularizeOptions {
 struct Regularized {
   Sketch sketch;
   std::vector<Regularity> kept;
-  int relations = 0;       ///< that were imposed
-  double nats_saved = 0;   ///< by which the description became shorter
+  int relations = 0;      ///< that were imposed
+  double nats_saved = 0;  ///< by which the description became shorter
 };
 
 /// Finds what strokes have in common (parallel, perpendicular, coplanar, coaxial, of equal radius)
-/// and lets them share it where that makes the description shorter: a parameter that is shared need
-/// not be stated, which saves its price, or log(range / standard deviation) less the log of the
-/// number of candidates if that is less; the edgels then are explained worse by half the squared
-/// Mahalanobis distance of the relation's residual. Both follow from the covariance of all control
-/// points, given the relations taken before. `seen`: the sketch (or one a small move before it) held
-/// against the edgels; `footprint`: world length of a pixel.
+/// and lets them share it where that makes the description shorter. A parameter that is shared need
+/// not be stated: that saves its price, or log(range / standard deviation) less the log of the
+/// number of candidates and less the price, if that is less (vague agreement is chance). The edgels
+/// then are explained worse by half the squared Mahalanobis distance of the relation's residual,
+/// from the covariance of all control points, given the relations taken before. What was taken is
+/// imposed on the least squares of the edgels with small standard deviations, and kept if the whole
+/// is shorter indeed. `seen`: the sketch (or one a small move before it) held against the edgels;
+/// `footprint`: world length of a pixel.
 Regularized regularize(const Sketch& sketch, const Observation& seen, double footprint,
                        const RegularizeOptions& options);
 
