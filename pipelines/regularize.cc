@@ -24,11 +24,12 @@ constexpr double kNews = 2;           // [sigma of the relation] less uncertain:
 constexpr double kLeastSigma = 1e-4;  // [px] of a relation
 
 // [px^2] What all views together leave unknown of a place on a stroke: never less than `floor`. And
-// a view may be wrong about the whole of a stroke, by its bias: many places are no better than one
-// then, so that of each is multiplied by their number.
+// a view may be wrong about the whole of a stroke: many places are no better than one then, so that
+// of each is multiplied by their number. 1.4826 median is the standard deviation of normal numbers;
+// the stroke itself follows the views by about two of them.
 double unknown_of(const StrokeStats& s, double floor_px) {
-  const double aside = s.views > 0 ? s.bias_px * s.bias_px / s.views : 0;
-  return floor_px * floor_px + s.samples * aside;
+  const double aside = 1.4826 * s.bias_px;
+  return floor_px * floor_px + s.samples * aside * aside / std::max(1, s.views - 2);
 }
 
 // The quadratics in squared standard deviations of the edgels.
