@@ -150,8 +150,7 @@ std::vector<int> relation_blocks(const Sketch& sketch, const Relations& relation
   return blocks;
 }
 
-RelationRows linearize(const Sketch& sketch, const Relations& relations,
-                       const Relation& relation) {
+RelationRows linearize(const Sketch& sketch, const Relations& relations, const Relation& relation) {
   RelationRows rows;
   rows.blocks = relation_blocks(sketch, relations, relation);
   const int nodes = int(sketch.nodes.cols()), shared = nodes + int(sketch.handles.cols());

@@ -52,9 +52,9 @@ Pair both(const Sketch& truth, const EdgeWorld& world) {
 
 // A box about the middle, turned; its upper face rises by `ramp_deg` along the first edge.
 Sketch box(double ramp_deg = 0) {
-  const Eigen::Matrix3d turn =
-      (Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized()) *
-       Eigen::AngleAxisd(0.7, Vector3d::UnitX())).toRotationMatrix();
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized()) *
+                                Eigen::AngleAxisd(0.7, Vector3d::UnitX()))
+                                   .toRotationMatrix();
   const Vector3d size(0.8, 0.6, 0.4);
   Sketch s;
   for (int k = 0; k < 8; ++k) {

@@ -114,9 +114,9 @@ TEST(Gaussian, IsTheDenseOneAfterObservationsOfOldAndNewVariables) {
   more(0, 4) = 1, more(0, n) = -1;
   observe(more, VectorXd::Constant(1, 0.7), 0.05);
   MatrixXd last = MatrixXd::Random(2, n + 1);
-  EXPECT_LT((gaussian.covariance(last.sparseView()) - last * dense.inverse() * last.transpose())
-                .norm(),
-            1e-9);
+  EXPECT_LT(
+      (gaussian.covariance(last.sparseView()) - last * dense.inverse() * last.transpose()).norm(),
+      1e-9);
 }
 
 }  // namespace
