@@ -18,9 +18,10 @@ using Eigen::VectorXd;
 using Candidate = RegularityCandidate;
 using Trial = RegularityTrial;
 
-constexpr double kGate = 4;           // [sigma] beyond which nothing is tried
-constexpr double kNews = 2;           // [sigma of the relation] less uncertain: known already
-constexpr double kLeastSigma = 1e-4;  // [px] of a relation
+constexpr double kGate = 4;            // [sigma] beyond which nothing is tried
+constexpr double kNews = 2;            // [sigma of the relation] less uncertain: known already
+constexpr double kLeastSigma = 1e-4;   // [px] of a relation
+constexpr double kMeaningless = 1e-6;  // share of its range in which a free coordinate is left
 
 }  // namespace
 
@@ -68,7 +69,18 @@ int RegularityFinder::add_shared(const SharedQuantity& quantity, double range) {
   used_.push_back(false);
   held_.emplace_back();
   for (int k = 0; k < 3; ++k) gaussian_.add_variable(range * range);
-  return int(relations_.shared.size()) - 1;
+  // The length of a direction, and where along an axis its point lies, mean nothing. Were they left
+  // uncertain, a turn of the direction by a little would take that for uncertainty across it.
+  const int index = int(relations_.shared.size()) - 1;
+  const bool is_direction = quantity.kind == SharedKind::kDirection;
+  if (is_direction || quantity.kind == SharedKind::kAxis) {
+    const Vector3d along =
+        is_direction ? quantity.value : relations_.shared[quantity.direction].value;
+    Gaussian::Rows row(1, gaussian_.size());
+    for (int k = 0; k < 3; ++k) row.coeffRef(0, 3 * (points_ + index) + k) = along[k];
+    gaussian_.observe(row, VectorXd::Zero(1), kMeaningless * range);
+  }
+  return index;
 }
 
 // Rows over all variables; `own`: as if shared quantities were given.

@@ -44,7 +44,8 @@ class RegularityFinder {
   /// Takes relations that pay: of directions; right angles; planes; axes; radii. The first `stages`
   /// of these five.
   void find(int stages);
-  double gain() const { return gain_; }  ///< [nat] of parameters that need not be stated
+  const Sketch& sketch() const { return s_; }  ///< moved by what was taken, in linear steps
+  double gain() const { return gain_; }        ///< [nat] of parameters that need not be stated
   Relations kept() const;
   std::vector<Regularity> regularities() const;
 

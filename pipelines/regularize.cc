@@ -41,6 +41,20 @@ SampleQuadratics whitened(const Observation& seen, double floor_px, double footp
   return out;
 }
 
+// The same quadratics, at samples of the sketch that were moved there. `cost` becomes what the way
+// cost.
+SampleQuadratics moved_to(const Samples& to, const Samples& from, const SampleQuadratics& q,
+                          double* cost) {
+  SampleQuadratics out = q;
+  *cost = 0;
+  for (size_t i = 0; i < q.information.size(); ++i) {
+    const Vector3d d = to.position.col(i) - from.position.col(i);
+    out.slope.col(i) += q.information[i] * d;
+    *cost += d.dot(q.information[i] * d) + 2 * d.dot(q.slope.col(i));
+  }
+  return out;
+}
+
 }  // namespace
 
 Regularized regularize(const Sketch& sketch, const Observation& seen, double footprint,
@@ -48,10 +62,10 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
   Regularized out;
   out.sketch = sketch;
   if (sketch.size() == 0) return out;
-  SampleQuadratics q = whitened(seen, options.sigma_px, footprint);
   const Samples now = evaluate_samples(sketch, seen.layout);
-  for (int i = 0; i < seen.layout.size(); ++i)
-    q.slope.col(i) += q.information[i] * (now.position.col(i) - seen.samples.position.col(i));
+  double cost = 0;
+  const SampleQuadratics q =
+      moved_to(now, seen.samples, whitened(seen, options.sigma_px, footprint), &cost);
   const SketchQuadratic all = sketch_quadratic(sketch, seen.layout, q);
   const RefineSketchResult free = refine_sketch(sketch, seen.layout, q);
   // It was decided on a linear view. If the whole is no shorter, relations of conics are to blame,
@@ -62,8 +76,11 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
     finder.find(stages);
     Relations relations = finder.kept();
     if (relations.list.empty()) return out;
-    const RefineSketchResult bound = refine_sketch(sketch, seen.layout, q, {}, &relations);
-    const double saved = finder.gain() - (bound.final_cost - free.final_cost) / 2;
+    const Samples linear = evaluate_samples(finder.sketch(), seen.layout);
+    const SampleQuadratics there = moved_to(linear, now, q, &cost);
+    const RefineSketchResult bound =
+        refine_sketch(finder.sketch(), seen.layout, there, {}, &relations);
+    const double saved = finder.gain() - (cost + bound.final_cost - free.final_cost) / 2;
     if (!(saved > 0)) continue;
     out.nats_saved = saved;
     out.sketch = bound.sketch;

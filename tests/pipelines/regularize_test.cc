@@ -6,6 +6,7 @@
 #include <random>
 
 #include "pipelines/polish.h"
+#include "pipelines/regularity_finder.h"
 #include "sketches/conic.h"
 #include "tests/support/strokes.h"
 
@@ -191,6 +192,22 @@ TEST(Regularize, DecidesTheSameInAnyUnitAndAgain) {
     }
     EXPECT_LT((q.bound.sketch.nodes / unit - p.bound.sketch.nodes).cwiseAbs().maxCoeff(), 1e-6);
   }
+}
+
+TEST(Regularize, WhatWasTakenFirstStillHoldsAfterWhatWasTakenLast) {
+  const EdgeWorld world = noisy_world(box(), 6, 9);
+  Observation last;
+  const Sketch free = polish(box(), world, {}, &last);
+  SampleQuadratics q{last.matches.information, last.matches.slope};
+  q.slope.setZero();
+  for (Eigen::Matrix3d& information : q.information) information *= 4;  // half a pixel each
+  RegularityFinder finder(free, sketch_quadratic(free, last.layout, q), world.footprint, {});
+  finder.find(5);
+  const Relations kept = finder.kept();
+  EXPECT_GT(kept.list.size(), 15u);
+  for (const Relation& r : kept.list)
+    EXPECT_LT(linearize(finder.sketch(), kept, r).residual.norm(), 4 * r.sigma)
+        << relation_name(r.kind) << " of stroke " << r.stroke;
 }
 
 TEST(Regularize, NothingStaysNothing) {
