@@ -175,6 +175,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("early-polish", &o->early_polish,
          "Least squares on the edgels in the fit and between the rounds, too");
   f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
+  f->add("regularize", &o->regularize.on,
+         "Let strokes share directions, planes, axes and radii where that is simpler");
 }
 
 void list_fields(CadOptions* o, Fields* f) {

@@ -16,6 +16,7 @@
 #include "pipelines/optimize.h"
 #include "pipelines/polish.h"
 #include "pipelines/rechain.h"
+#include "pipelines/regularize.h"
 #include "pipelines/select.h"
 #include "sketches/length_unit.h"
 #include "sketches/segment.h"
@@ -47,6 +48,7 @@ struct ReconstructOptions : DetectionOptions {
   PolishOptions polish;
   RechainOptions rechain;
   CloseOptions close;
+  RegularizeOptions regularize;
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too

@@ -55,10 +55,27 @@ void remove_old_overlays(const std::string& folder) {
   }
 }
 
-void write_sketch(const std::string& folder, const Sketch& sketch, const Scene& scene,
-                  const std::string& options_json, const OutputOptions& options) {
+// As JSON: [{"kind":"parallel","strokes":[0,3]}, ...].
+std::string regularities_json(const std::vector<Regularity>& regularities) {
+  std::string out;
+  for (const Regularity& r : regularities) {
+    out += std::string(out.empty() ? "" : ",") + "{\"kind\":\"" + relation_name(r.kind) +
+           "\",\"strokes\":[";
+    for (size_t i = 0; i < r.strokes.size(); ++i)
+      out += (i ? "," : "") + std::to_string(r.strokes[i]);
+    out += "]}";
+  }
+  return "[" + out + "]";
+}
+
+void write_sketch(const std::string& folder, const Reconstruction& reconstruction,
+                  const Scene& scene, const std::string& options_json,
+                  const OutputOptions& options) {
+  const Sketch& sketch = reconstruction.sketch;
   const std::string extra = std::string("{\"program\":\"sketchsplat\",\"version\":\"") +
-                            SKETCHSPLAT_VERSION + "\",\"options\":" + options_json + "}";
+                            SKETCHSPLAT_VERSION + "\",\"options\":" + options_json +
+                            ",\"regularities\":" +
+                            regularities_json(reconstruction.report.regularities) + "}";
   write_atomically(folder + "/sketch.json",
                    [&](std::ostream& out) { write_sketch_json(out, sketch, extra); });
   write_atomically(folder + "/parametric_edges.json",
@@ -100,7 +117,7 @@ void write_outputs(const std::string& folder, Reconstruction reconstruction, con
   std::vector<ReportImage> overlays;
   {
     Stage stage("write", 0, &reconstruction.report, progress);
-    write_sketch(folder, sketch, scene, fields_json(method.list), output_options);
+    write_sketch(folder, reconstruction, scene, fields_json(method.list), output_options);
     remove_old_overlays(folder);
     overlays = write_overlays(folder, sketch, scene, output_options.overlays,
                               &reconstruction.report, progress);

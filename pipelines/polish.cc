@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "pipelines/observe.h"
 #include "sketches/refine_sketch.h"
 
 namespace sketchsplat {
 
-Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options) {
+Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options,
+              Observation* last) {
   Sketch s = sketch;
   double sigma = 0;
   for (int round = 0; round < options.rounds && s.size() > 0; ++round) {
@@ -18,7 +19,7 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     const bool coarse = round < std::min(2, options.rounds / 2);
     match.reach_px = coarse ? options.reach_px : std::max(options.final_reach_px, 4 * sigma);
     match.max_bias = coarse ? 0 : std::max(options.bias_px, 2 * sigma);
-    const Observation o = observe(s, world, match, options.spacing_px, 1);
+    Observation o = observe(s, world, match, options.spacing_px, 1);
     sigma = o.matches.sigma_px;
     RefineSketchOptions refine;
     refine.smooth_angle = options.smooth_deg * M_PI / 180;
@@ -28,6 +29,7 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     const Samples moved = evaluate_samples(refined.sketch, o.layout);
     const double step = (moved.position - o.samples.position).colwise().norm().maxCoeff();
     s = refined.sketch;
+    if (last) *last = std::move(o);
     if (!coarse && step < options.stop_px * world.footprint) break;
   }
   return s;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "edges/match.h"
+#include "pipelines/observe.h"
 #include "sketches/sketch.h"
 
 namespace sketchsplat {
@@ -20,7 +20,9 @@ struct PolishOptions {
 };
 
 /// Moves the strokes onto the edgels of all views: match, then least squares with a robust weight
-/// (iteratively reweighted biweight), again and again until nothing moves.
-Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options);
+/// (iteratively reweighted biweight), again and again until nothing moves. `last`, if given, becomes
+/// what was matched before the last move; it stays as it is if there is no round.
+Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options,
+              Observation* last = nullptr);
 
 }  // namespace sketchsplat

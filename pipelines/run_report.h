@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipelines/progress.h"
+#include "sketches/relations.h"
 
 namespace sketchsplat {
 
@@ -26,6 +27,7 @@ struct RunReport {
   std::vector<StageReport> stages;
   Numbers counts;               ///< of the scene and the method: "views", "edgels"
   std::vector<Numbers> rounds;  ///< one row per round
+  std::vector<Regularity> regularities;  ///< that the sketch keeps to
   std::vector<std::string> warnings;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/stages.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "datasets/errors.h"
@@ -94,6 +95,26 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
   return polish(fit_extents(sketch, world, options.extent), world, early(options));
 }
 
+// One price and one least deviation for all that is described.
+RegularizeOptions regularize_options(const ReconstructOptions& options) {
+  RegularizeOptions regularize = options.regularize;
+  regularize.price = options.segment.price;
+  regularize.sigma_px = options.rechain.sigma_px;
+  return regularize;
+}
+
+void count_regularities(const Regularized& regular, RunReport* report) {
+  for (const RelationKind kind :
+       {RelationKind::kParallel, RelationKind::kPerpendicular, RelationKind::kCoplanar,
+        RelationKind::kCoaxial, RelationKind::kEqualRadius}) {
+    const auto is_kind = [kind](const Regularity& r) { return r.kind == kind; };
+    const auto count = std::count_if(regular.kept.begin(), regular.kept.end(), is_kind);
+    report->counts.push_back({std::string("regular_") + relation_name(kind), double(count)});
+  }
+  report->counts.push_back({"regular_nats_saved", regular.nats_saved});
+  report->regularities = regular.kept;
+}
+
 // Chains of strokes in as few words as their edgels allow.
 Sketch rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
   const Rechained r = rechain(sketch, world, options.segment, options.rechain);
@@ -149,7 +170,16 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
   const Closed closed = close_graph(sketch, world, options.close);
-  Sketch out = options.final_polish ? polish(closed.sketch, world, options.polish) : closed.sketch;
+  Sketch out = closed.sketch;
+  Regularized regular;
+  if (options.final_polish) {
+    Observation last;
+    out = polish(closed.sketch, world, options.polish, &last);
+    if (options.regularize.on && last.layout.size() > 0) {
+      regular = regularize(out, last, world.footprint, regularize_options(options));
+      out = regular.sketch;
+    }
+  }
   MatchOptions match;
   match.reach_px = 1.0;
   const Observation o =
@@ -159,6 +189,7 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
   report->counts.push_back({"ends_joined", double(closed.joined)});
   report->counts.push_back({"lines_bridged", double(closed.bridged)});
   report->counts.push_back({"arcs_rounded", double(closed.rounded)});
+  count_regularities(regular, report);
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
   stage.result(std::to_string(out.size()) + " strokes");
   return out;

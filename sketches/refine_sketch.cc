@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sketches/curve.h"
+#include "sketches/relation_cost.h"
 
 namespace sketchsplat {
 namespace {
@@ -118,6 +119,29 @@ void add_smooth_joints(const RefineSketchOptions& options, Sketch* s, ceres::Pro
   }
 }
 
+// Their directions stay unit vectors; a point on an axis stays where it is along it.
+void add_relations(Relations* relations, double hold, Sketch* s, ceres::Problem* problem) {
+  const int nodes = int(s->nodes.cols()), shared = nodes + int(s->handles.cols());
+  for (const Relation& relation : relations->list) {
+    std::vector<double*> blocks;
+    for (int b : relation_blocks(*s, *relations, relation))
+      blocks.push_back(b < nodes    ? s->nodes.col(b).data()
+                       : b < shared ? s->handles.col(b - nodes).data()
+                                    : relations->shared[b - shared].value.data());
+    problem->AddResidualBlock(make_relation_cost(*s, *relations, relation), nullptr, blocks);
+  }
+  for (SharedQuantity& q : relations->shared) {
+    double* block = q.value.data();
+    if (!problem->HasParameterBlock(block)) continue;
+    if (q.kind == SharedKind::kDirection)
+      problem->SetManifold(block, new ceres::SphereManifold<3>);
+    else
+      problem->AddResidualBlock(
+          new ceres::AutoDiffCostFunction<Hold, 3, 3>(new Hold{0.1 * hold, q.value}), nullptr,
+          block);
+  }
+}
+
 }  // namespace
 
 std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_angle) {
@@ -152,7 +176,7 @@ std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_
 
 RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
                                  const SampleQuadratics& quadratics,
-                                 const RefineSketchOptions& options) {
+                                 const RefineSketchOptions& options, Relations* relations) {
   RefineSketchResult result;
   result.sketch = sketch;
   Sketch& s = result.sketch;
@@ -196,6 +220,7 @@ RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layou
             new ceres::AutoDiffCostFunction<Hold, 3, 3>(new Hold{hold, points->col(i)}), nullptr,
             block);
     }
+  if (relations) add_relations(relations, hold, &s, &problem);
   ceres::Solver::Options solver;
   solver.max_num_iterations = options.max_iterations;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "sketches/relations.h"
 #include "sketches/sample.h"
 
 namespace sketchsplat {
@@ -44,8 +45,11 @@ std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_
 
 /// Moves nodes and handles so that the samples of `layout` reach the least sum of their quadratics.
 /// Strokes that share a node stay joined. What the samples do not determine (an end along its line)
-/// stays where it is.
+/// stays where it is. `relations`, if given, add (residual / sigma)^2 each, in the units of the
+/// quadratics; their shared quantities move, too.
 RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
-                           const SampleQuadratics& quadratics, const RefineSketchOptions& options = {});
+                                 const SampleQuadratics& quadratics,
+                                 const RefineSketchOptions& options = {},
+                                 Relations* relations = nullptr);
 
 }  // namespace sketchsplat

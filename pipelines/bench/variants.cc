@@ -18,14 +18,16 @@ std::vector<BenchVariant> ablation_variants() {
                                             no_topology = {"simplify", "false"},
                                             no_visibility = {"visibility", "false"},
                                             no_early = {"early-polish", "false"},
-                                            no_final = {"final-polish", "false"};
+                                            no_final = {"final-polish", "false"},
+                                            no_regular = {"regularize", "false"};
   return {
       {"lift and fit only", {no_early, no_final, no_rounds}},
       {"+ raster rounds", {no_early, no_final, no_topology, no_visibility}},
       {"+ topology", {no_early, no_final, no_visibility}},
       {"+ visibility", {no_early, no_final}},
-      {"+ final polish", {no_early}},
-      {"+ polish in fit and rounds = all", {}},
+      {"+ final polish", {no_early, no_regular}},
+      {"+ polish in fit and rounds", {no_regular}},
+      {"+ regularities = all", {}},
       {"all but rounds", {no_rounds}},
       {"all but raster steps", {no_steps}},
       {"all but topology", {no_topology}},

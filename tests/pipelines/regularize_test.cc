@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/regularize.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "pipelines/polish.h"
+#include "pipelines/regularity_finder.h"
+#include "sketches/conic.h"
+#include "tests/support/strokes.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using Eigen::Vector3d;
+const Vector3d kMiddle(0.5, 0.5, 0.5);
+
+// Edgels that scatter, and views that are wrong about a whole curve, too.
+EdgeWorld noisy_world(const Sketch& truth, int views, unsigned seed, double unit = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const std::vector<View> ring = ring_of_views(views, unit * kMiddle, 3 * unit);
+  std::vector<EdgelMap> maps;
+  for (const View& view : ring) {
+    EdgelMap map = ideal_edgels(view, polylines_of(truth));
+    for (size_t c = 0; c + 1 < map.chain.size(); ++c) {
+      const double aside = 0.1 * normal(random);
+      for (int i = map.chain[c]; i < map.chain[c + 1]; ++i) {
+        Edgel& e = map.edgels[i];
+        const double d = aside + 0.2 * normal(random);
+        e.x += float(d * e.nx), e.y += float(d * e.ny);
+      }
+    }
+    build_lookup(&map, 4.0);
+    maps.push_back(map);
+  }
+  return make_edge_world(ring, maps);
+}
+
+struct Pair {
+  Sketch free;
+  Regularized bound;
+};
+Pair both(const Sketch& truth, const EdgeWorld& world) {
+  Pair p;
+  Observation last;
+  p.free = polish(truth, world, {}, &last);
+  p.bound = regularize(p.free, last, world.footprint, {});
+  return p;
+}
+
+// A box about the middle, turned; its upper face rises by `ramp_deg` along the first edge.
+Sketch box(double ramp_deg = 0) {
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized()) *
+                                Eigen::AngleAxisd(0.7, Vector3d::UnitX()))
+                                   .toRotationMatrix();
+  const Vector3d size(0.8, 0.6, 0.4);
+  Sketch s;
+  for (int k = 0; k < 8; ++k) {
+    Vector3d p((k & 1) - 0.5, (k >> 1 & 1) - 0.5, (k >> 2) - 0.5);
+    p = p.cwiseProduct(size);
+    if (k >> 2) p.z() += std::tan(ramp_deg * M_PI / 180) * p.x();
+    s.add_node(kMiddle + turn * p);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    for (int k = 0; k < 8; ++k)
+      if (!(k >> axis & 1)) s.add_stroke(StrokeKind::kLine, k, k | 1 << axis, {});
+  return s;
+}
+
+double angle_deg(const Sketch& s, int a, int b) {
+  const double sine = stroke_direction(s, a).cross(stroke_direction(s, b)).norm();
+  return std::asin(std::min(1.0, sine)) * 180 / M_PI;
+}
+double error_of(const Sketch& s, const Sketch& truth) {
+  return std::sqrt((s.nodes - truth.nodes).colwise().squaredNorm().mean());
+}
+int count_of(const Regularized& r, RelationKind kind, size_t strokes) {
+  int n = 0;
+  for (const Regularity& k : r.kept) n += k.kind == kind && k.strokes.size() == strokes;
+  return n;
+}
+bool together(const Regularized& r, RelationKind kind, int a, int b) {
+  for (const Regularity& k : r.kept)
+    if (k.kind == kind && std::count(k.strokes.begin(), k.strokes.end(), a) &&
+        std::count(k.strokes.begin(), k.strokes.end(), b))
+      return true;
+  return false;
+}
+
+TEST(Regularize, EdgesOfANoisyBoxBecomeParallelAndComeNearerToTheTruth) {
+  const Sketch truth = box();
+  double free = 0, bound = 0;
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const EdgeWorld world = noisy_world(truth, 8, seed);
+    const Pair p = both(truth, world);
+    double before = 0, after = 0;
+    for (int i = 0; i < 12; ++i)
+      for (int j = i + 1; j < 4 * (i / 4 + 1); ++j) {
+        before = std::max(before, angle_deg(p.free, i, j));
+        after = std::max(after, angle_deg(p.bound.sketch, i, j));
+      }
+    EXPECT_GT(before, 0.03) << seed;
+    EXPECT_LT(after, 0.01) << seed;
+    EXPECT_EQ(count_of(p.bound, RelationKind::kParallel, 4), 3) << seed;
+    EXPECT_EQ(count_of(p.bound, RelationKind::kPerpendicular, 8), 3) << seed;
+    free += error_of(p.free, truth), bound += error_of(p.bound.sketch, truth);
+  }
+  EXPECT_LT(bound, 0.8 * free);
+}
+
+TEST(Regularize, ARampOfHalfADegreeThatTheViewsTellIsKept) {
+  for (double ramp : {0.5, 1.0}) {
+    const Sketch truth = box(ramp);
+    const Pair p = both(truth, noisy_world(truth, 8, 7));
+    // Strokes 0, 1 run along the lower face, 2, 3 up the ramp.
+    for (int lower : {0, 1})
+      for (int upper : {2, 3}) {
+        EXPECT_NEAR(angle_deg(p.bound.sketch, lower, upper), ramp, 0.1);
+        EXPECT_FALSE(together(p.bound, RelationKind::kParallel, lower, upper));
+      }
+    EXPECT_LT(angle_deg(p.bound.sketch, 2, 3), 0.01);
+    EXPECT_TRUE(together(p.bound, RelationKind::kParallel, 2, 3));
+    EXPECT_LE(error_of(p.bound.sketch, truth), error_of(p.free, truth));
+  }
+}
+
+TEST(Regularize, HolesOfOneDrillShareAxisAndRadiusOthersDoNot) {
+  const double px = 3.0 / 500;
+  const Vector3d axis = Vector3d(1, 2, 5).normalized(), base(0.35, 0.4, 0.3);
+  Vector3d x, y;
+  frame_of<double>(axis, &x, &y);
+  Sketch truth;
+  add_circle(&truth, base, 0.12 * axis);
+  add_circle(&truth, base + 0.3 * axis, 0.12 * axis);
+  add_circle(&truth, base + 0.4 * x + 1.5 * px * axis, (0.12 + 1.5 * px) * axis);
+  add_circle(&truth, base + 0.4 * x + 0.3 * axis + 1.5 * px * y, 0.08 * axis);
+  const Pair p = both(truth, noisy_world(truth, 8, 3));
+  EXPECT_EQ(count_of(p.bound, RelationKind::kParallel, 4), 1);
+  EXPECT_TRUE(together(p.bound, RelationKind::kCoaxial, 0, 1));
+  EXPECT_TRUE(together(p.bound, RelationKind::kEqualRadius, 0, 1));
+  EXPECT_FALSE(together(p.bound, RelationKind::kEqualRadius, 0, 2));
+  EXPECT_FALSE(together(p.bound, RelationKind::kCoaxial, 2, 3));
+  EXPECT_FALSE(together(p.bound, RelationKind::kCoplanar, 0, 2));
+  const CircleParameters a = circle_parameters(p.bound.sketch, 0),
+                         b = circle_parameters(p.bound.sketch, 1);
+  EXPECT_LT(std::abs(a.radius - b.radius), 0.002 * px);
+  EXPECT_LT((b.centre - a.centre).cross(a.normal).norm(), 0.005 * px);
+}
+
+// Lines and rings anywhere; radii five pixels apart, as two that agree by chance are equal to all
+// who look.
+Sketch unrelated(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0.1, 0.9);
+  const auto place = [&] {
+    const double x = uniform(random), y = uniform(random), z = uniform(random);
+    return Vector3d(x, y, z);
+  };
+  Sketch s;
+  for (int i = 0; i < 10; ++i) {
+    const Vector3d a = place();
+    add_line(&s, a, a + 0.5 * (place() - kMiddle).normalized());
+  }
+  for (int i = 0; i < 4; ++i)
+    add_circle(&s, place(), (0.05 + 0.03 * i) * (place() - kMiddle).normalized());
+  return s;
+}
+
+TEST(Regularize, StrokesThatHaveNothingInCommonStayAsTheyAre) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Sketch truth = unrelated(seed);
+    const Pair p = both(truth, noisy_world(truth, 8, seed));
+    EXPECT_TRUE(p.bound.kept.empty()) << seed;
+    EXPECT_EQ(p.bound.sketch.nodes, p.free.nodes);
+  }
+}
+
+TEST(Regularize, DecidesTheSameInAnyUnitAndAgain) {
+  const EdgeWorld world = noisy_world(box(0.5), 6, 5);
+  const Pair p = both(box(0.5), world), again = both(box(0.5), world);
+  EXPECT_EQ(p.bound.sketch.nodes, again.bound.sketch.nodes);
+  for (const double unit : {1e3}) {
+    const Sketch truth = scaled(box(0.5), unit);
+    const Pair q = both(truth, noisy_world(truth, 6, 5, unit));
+    ASSERT_EQ(q.bound.kept.size(), p.bound.kept.size());
+    for (size_t i = 0; i < p.bound.kept.size(); ++i) {
+      EXPECT_EQ(q.bound.kept[i].kind, p.bound.kept[i].kind);
+      EXPECT_EQ(q.bound.kept[i].strokes, p.bound.kept[i].strokes);
+    }
+    EXPECT_LT((q.bound.sketch.nodes / unit - p.bound.sketch.nodes).cwiseAbs().maxCoeff(), 1e-6);
+  }
+}
+
+TEST(Regularize, WhatWasTakenFirstStillHoldsAfterWhatWasTakenLast) {
+  const EdgeWorld world = noisy_world(box(), 6, 9);
+  Observation last;
+  const Sketch free = polish(box(), world, {}, &last);
+  SampleQuadratics q{last.matches.information, last.matches.slope};
+  q.slope.setZero();
+  for (Eigen::Matrix3d& information : q.information) information *= 4;  // half a pixel each
+  RegularityFinder finder(free, sketch_quadratic(free, last.layout, q), world.footprint, {});
+  finder.find(5);
+  const Relations kept = finder.kept();
+  EXPECT_GT(kept.list.size(), 15u);
+  for (const Relation& r : kept.list)
+    EXPECT_LT(linearize(finder.sketch(), kept, r).residual.norm(), 4 * r.sigma)
+        << relation_name(r.kind) << " of stroke " << r.stroke;
+}
+
+TEST(Regularize, NothingStaysNothing) {
+  const Regularized r = regularize(Sketch(), Observation(), 1, {});
+  EXPECT_EQ(r.sketch.size(), 0);
+  EXPECT_TRUE(r.kept.empty());
+}
+
+}  // namespace
+}  // namespace sketchsplat
