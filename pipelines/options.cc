@@ -173,6 +173,7 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("early-polish", &o->early_polish,
          "Least squares on the edgels in the fit and between the rounds, too");
   f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
+  f->add("min-confidence", &o->min_confidence, "", 0, 1, "Less probable strokes are left out");
 }
 
 void list_fields(CadOptions* o, Fields* f) {

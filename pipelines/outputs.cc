@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "datasets/errors.h"
 #include "pipelines/atomic_file.h"
@@ -15,6 +17,8 @@
 namespace sketchsplat {
 namespace fs = std::filesystem;
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::string bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -55,12 +59,22 @@ void remove_old_overlays(const std::string& folder) {
   }
 }
 
-void write_sketch(const std::string& folder, const Sketch& sketch, const Scene& scene,
-                  const std::string& options_json, const OutputOptions& options) {
-  const std::string extra = std::string("{\"program\":\"sketchsplat\",\"version\":\"") +
-                            SKETCHSPLAT_VERSION + "\",\"options\":" + options_json + "}";
+void write_sketch(const std::string& folder, const Reconstruction& reconstruction,
+                  const Scene& scene, const std::string& options_json,
+                  const OutputOptions& options) {
+  const Sketch& sketch = reconstruction.sketch;
+  Json extra = {{"program", "sketchsplat"}, {"version", SKETCHSPLAT_VERSION}};
+  extra["options"] = Json::parse(options_json);
+  extra["views"] = reconstruction.views;
+  if (reconstruction.proposed.size() > 0) {
+    std::ostringstream proposed;
+    write_sketch_json(proposed, reconstruction.proposed);
+    extra["proposed"] = Json::parse(proposed.str());
+  }
+  // Names of files may hold bytes that are no UTF-8.
+  const std::string members = extra.dump(-1, ' ', false, Json::error_handler_t::replace);
   write_atomically(folder + "/sketch.json",
-                   [&](std::ostream& out) { write_sketch_json(out, sketch, extra); });
+                   [&](std::ostream& out) { write_sketch_json(out, sketch, members); });
   write_atomically(folder + "/parametric_edges.json",
                    [&](std::ostream& out) { write_parametric_edges(out, sketch); });
   write_atomically(folder + "/sketch.obj", [&](std::ostream& out) { write_obj(out, sketch); });
@@ -100,7 +114,7 @@ void write_outputs(const std::string& folder, Reconstruction reconstruction, con
   std::vector<ReportImage> overlays;
   {
     Stage stage("write", 0, &reconstruction.report, progress);
-    write_sketch(folder, sketch, scene, fields_json(method.list), output_options);
+    write_sketch(folder, reconstruction, scene, fields_json(method.list), output_options);
     remove_old_overlays(folder);
     overlays = write_overlays(folder, sketch, scene, output_options.overlays,
                               &reconstruction.report, progress);

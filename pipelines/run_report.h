@@ -26,6 +26,7 @@ struct RunReport {
   std::vector<StageReport> stages;
   Numbers counts;               ///< of the scene and the method: "views", "edgels"
   std::vector<Numbers> rounds;  ///< one row per round
+  std::vector<Numbers> strokes;  ///< what the confidence of each stroke was made of, see confidence.h
   std::vector<std::string> warnings;
 };
 
