@@ -86,6 +86,16 @@ double robust_sigma(const std::vector<SampleMatch>& matches) {
 
 }  // namespace
 
+Eigen::Vector3d distance_gradient(const EdgeWorld& world, const SampleMatch& match,
+                                  const Eigen::Vector3d& position) {
+  const View& v = world.views[match.view];
+  const Edgel& e = world.maps[match.view].edgels[match.edgel];
+  const Eigen::Vector3d q = v.cam_from_world * position;
+  return (Eigen::RowVector2d(e.nx, e.ny) * v.camera.project_jacobian(q) *
+          v.cam_from_world.rotation)
+      .transpose();
+}
+
 Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
                       const MatchOptions& options) {
   const int n = int(samples.position.cols()), views = int(world.views.size());
@@ -108,12 +118,7 @@ Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
   out.information.assign(n, Eigen::Matrix3d::Zero());
   out.slope = Eigen::Matrix3Xd::Zero(3, n);
   for (const SampleMatch& m : out.matches) {
-    const View& v = world.views[m.view];
-    const Edgel& e = world.maps[m.view].edgels[m.edgel];
-    const Eigen::Vector3d q = v.cam_from_world * samples.position.col(m.sample);
-    const Eigen::Vector3d a =
-        (Eigen::RowVector2d(e.nx, e.ny) * v.camera.project_jacobian(q) * v.cam_from_world.rotation)
-            .transpose();
+    const Eigen::Vector3d a = distance_gradient(world, m, samples.position.col(m.sample));
     out.information[m.sample] += m.weight * a * a.transpose();
     out.slope.col(m.sample) += m.weight * a * double(m.distance_px);
   }

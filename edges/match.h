@@ -42,6 +42,9 @@ struct Matches {
   double sigma_px = 0;                       ///< robust standard deviation of the distances
   int views_of(int sample) const { return first[sample + 1] - first[sample]; }
 };
+/// Change of a match's distance by a move of its sample, which is at `position` [px / world].
+Eigen::Vector3d distance_gradient(const EdgeWorld& world, const SampleMatch& match,
+                                  const Eigen::Vector3d& position);
 Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
                       const MatchOptions& options);
 

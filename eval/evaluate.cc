@@ -161,20 +161,23 @@ std::vector<CurveScore> worst_edges(const std::vector<TrueEdge>& edges,
   return worst_of(std::move(worst), to_unit);
 }
 
-std::vector<CurveScore> worst_strokes(const Prediction& prediction, const NearestPoints& truth,
-                                      const Normalization& to_unit) {
-  std::vector<CurveScore> worst;
+// All strokes; those that are not perfect go into `worst`, too.
+std::vector<CurveScore> score_strokes(const Prediction& prediction, const NearestPoints& truth,
+                                      std::vector<CurveScore>* worst) {
+  std::vector<CurveScore> all;
   const bool known = prediction.facts.size() == prediction.strokes.size();
   for (size_t i = 0; i < prediction.strokes.size(); ++i) {
     CurveScore curve;
-    if (!has_errors(prediction.strokes[i], truth, &curve)) continue;
+    const bool wrong = has_errors(prediction.strokes[i], truth, &curve);
     curve.name = known ? prediction.facts[i].name : std::to_string(i);
     curve.type = known ? prediction.facts[i].kind : "";
     curve.length = polyline_length(prediction.strokes[i]);
+    all.push_back(curve);
+    if (!wrong) continue;
     curve.polyline = prediction.strokes[i];
-    worst.push_back(std::move(curve));
+    worst->push_back(std::move(curve));
   }
-  return worst_of(std::move(worst), to_unit);
+  return all;
 }
 
 }  // namespace
@@ -222,7 +225,9 @@ Evaluation evaluate(const Prediction& prediction, const GroundTruth& truth,
   result.structure = compare_structure(unit.strokes, unit.facts, merged);
   result.worst_edges =
       worst_edges(merged, NearestPoints(arc_length_samples(unit, kFineStep)), to_unit);
-  result.worst_strokes = worst_strokes(unit, NearestPoints(dense.points), to_unit);
+  std::vector<CurveScore> wrong;
+  result.strokes = score_strokes(unit, NearestPoints(dense.points), &wrong);
+  result.worst_strokes = worst_of(std::move(wrong), to_unit);
   return result;
 }
 

@@ -51,6 +51,7 @@ struct Evaluation {
   /// At most five each, none of them perfect: true edges with the least recall (all of them, smooth
   /// continuations joined), strokes with the least precision; then by length, longest first.
   std::vector<CurveScore> worst_edges, worst_strokes;
+  std::vector<CurveScore> strokes;  ///< all of them in their order, without their polylines
 };
 
 /// Compares a prediction with the ground truth. Both are brought to the unit cube first if the

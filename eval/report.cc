@@ -279,6 +279,16 @@ std::string scenes_to_csv(const std::vector<SceneEvaluation>& scenes) {
   return text;
 }
 
+std::string strokes_to_csv(const std::vector<SceneEvaluation>& scenes) {
+  std::string text = "scene,stroke,kind,length,share,worst\n";
+  for (const SceneEvaluation& scene : scenes)
+    for (const CurveScore& c : scene.evaluation.strokes)
+      text += csv_cell(scene.name) + "," + csv_cell(c.name) + "," + c.type + "," +
+              number(c.length, 6) + "," + number(c.share, 3) + "," + number(1000 * c.worst, 3) +
+              "\n";
+  return text;
+}
+
 std::string scenes_to_table(const std::vector<SceneEvaluation>& scenes) {
   // The mean is made of all numbers, then shown as far as the table shows them.
   std::vector<Cells> rows;

@@ -30,6 +30,10 @@ std::string to_table(const Evaluation& evaluation, const std::string& name = "")
 ///   protocol, prediction, ground_truth, lines, curves, samples, truth_samples
 std::string to_json(const Evaluation& evaluation);
 
+/// Every stroke as a row of CSV: scene, stroke (its name), kind, length, share (per cent of it
+/// within 0.005 of the truth), worst (thousandths).
+std::string strokes_to_csv(const std::vector<SceneEvaluation>& scenes);
+
 /// The worst curves in words, a line each; empty if all are right.
 std::string worst_curves(const Evaluation& evaluation);
 

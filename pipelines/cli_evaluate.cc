@@ -78,6 +78,7 @@ void write_files(const EvaluateArguments& arguments, const std::string& json,
   if (arguments.out.empty()) return;
   write_text(arguments.out + "/evaluation.json", json);
   write_text(arguments.out + "/evaluation.csv", scenes_to_csv(scenes));
+  write_text(arguments.out + "/strokes.csv", strokes_to_csv(scenes));
 }
 
 void evaluate_one(const EvaluateArguments& arguments, Progress* progress) {
@@ -138,7 +139,7 @@ Verb evaluate_verb() {
   f.choose("missing", &arguments->missing, {"zero", "skip"},
            "What a scene without a result counts, of several");
   f.add("json", &arguments->json, "FILE", "Write all numbers to this file, too");
-  f.add("out", &arguments->out, "DIR", "Write evaluation.json, evaluation.csv and overlays there");
+  f.add("out", &arguments->out, "DIR", "Write evaluation.json, evaluation.csv, strokes.csv and overlays there");
   f.add("overlays", &arguments->overlays, "images", 0, 100,
         "Draw missed edges (red) and wrong strokes (blue) over so many images");
   Verb verb;

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "datasets/errors.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
+#include "pipelines/confidence.h"
 #include "pipelines/outputs.h"
 #include "pipelines/report.h"
 #include "sketches/io.h"
@@ -20,6 +25,7 @@ struct ExportArguments {
   std::string format;  // empty: by the ending of `out`
   CadOptions cad;
   double min_confidence = 0;
+  bool proposed = false;
   double deflection = 1e-4;
   double spacing = OutputOptions().point_spacing;
 };
@@ -39,13 +45,50 @@ std::string format_of(const std::string& path) {
 }
 
 // Accepts the folder that `reconstruct` wrote, too.
-Sketch read_sketch(const std::string& given) {
-  namespace fs = std::filesystem;
+std::string sketch_file(const std::string& given) {
   std::error_code none;
-  const std::string path = fs::is_directory(given, none) ? given + "/sketch.json" : given;
+  return std::filesystem::is_directory(given, none) ? given + "/sketch.json" : given;
+}
+
+Sketch read_sketch(const std::string& given) {
+  const std::string path = sketch_file(given);
   std::ifstream in(path);
   if (!in) throw InputError(path, "a sketch.json", "no file that can be read");
   return read_sketch_json(in, path);
+}
+
+// What sketch.json holds beside the sketch: the options, the names of the views.
+std::string other_members(const std::string& path, bool without_proposed) {
+  std::ifstream in(path);
+  nlohmann::ordered_json j = nlohmann::ordered_json::parse(in);
+  for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
+  if (without_proposed) j.erase("proposed");
+  return j.dump();
+}
+
+// The edges that nobody saw join the nodes of the others.
+Sketch with_proposed(Sketch sketch, const std::string& given) {
+  const std::string path = sketch_file(given);
+  std::ifstream in(path);
+  const nlohmann::ordered_json j = nlohmann::ordered_json::parse(in);
+  if (!j.contains("proposed")) return sketch;
+  std::istringstream text(j["proposed"].dump());
+  const Sketch proposed = read_sketch_json(text, path + ": proposed");
+  std::vector<int> node;
+  for (int n = 0; n < proposed.nodes.cols(); ++n) {
+    int same = 0;
+    while (same < sketch.nodes.cols() && sketch.nodes.col(same) != proposed.nodes.col(n)) ++same;
+    node.push_back(same < sketch.nodes.cols() ? same : sketch.add_node(proposed.nodes.col(n)));
+  }
+  for (int i = 0; i < proposed.size(); ++i) {
+    const Stroke& s = proposed.strokes[i];
+    std::vector<Eigen::Vector3d> handles;
+    for (int h = 0; h < num_handles(s.kind); ++h)
+      handles.push_back(proposed.handles.col(s.handle + h));
+    sketch.add_stroke(s.kind, s.begin < 0 ? -1 : node[s.begin], s.end < 0 ? -1 : node[s.end],
+                      handles, proposed.evidence[i]);
+  }
+  return sketch;
 }
 
 void write(std::ostream& out, const Sketch& sketch, const ExportArguments& arguments,
@@ -66,7 +109,7 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
   } else if (format == "parametric") {
     write_parametric_edges(out, sketch);
   } else {
-    write_sketch_json(out, sketch);
+    write_sketch_json(out, sketch, other_members(sketch_file(arguments.sketch), arguments.proposed));
   }
 }
 
@@ -82,15 +125,15 @@ void check(const ExportArguments& arguments, const std::string& format) {
 
 // Strokes of unknown confidence stay.
 Sketch confident(const Sketch& sketch, double least, const std::string& path, Progress* progress) {
-  std::vector<bool> keep;
-  bool known = false;
-  for (const Evidence& e : sketch.evidence) {
-    known |= !std::isnan(e.confidence);
-    keep.push_back(!(e.confidence < least));
-  }
-  if (least > 0 && !known && sketch.size() > 0)
+  if (!(least > 0)) return sketch;
+  const bool known = std::any_of(sketch.evidence.begin(), sketch.evidence.end(),
+                                 [](const Evidence& e) { return !std::isnan(e.confidence); });
+  if (!known && sketch.size() > 0)
     progress->warn(path + " knows no confidence: --min-confidence leaves nothing out");
-  return keep_strokes(sketch, keep);
+  const Sketch kept = keep_confident(sketch, least);
+  std::cout << kept.size() << " curves, " << sketch.size() - kept.size()
+            << " less probable ones left out\n";
+  return kept;
 }
 
 void run_export(const ExportArguments& arguments, Progress* progress) {
@@ -98,7 +141,8 @@ void run_export(const ExportArguments& arguments, Progress* progress) {
   if (format.empty())
     throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
   check(arguments, format);
-  const Sketch all = read_sketch(arguments.sketch);
+  Sketch all = read_sketch(arguments.sketch);
+  if (arguments.proposed) all = with_proposed(all, arguments.sketch);
   const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
   write_atomically(arguments.out,
                    [&](std::ostream& out) { write(out, sketch, arguments, format); });
@@ -119,7 +163,8 @@ Verb export_verb() {
   f.choose("format", &arguments->format, kFormats, "If left out, the ending of FILE decides");
   f.group("Output");
   f.add("min-confidence", &arguments->min_confidence, "", 0, 1,
-        "Less confident strokes are left out, unless nobody knows");
+        "Less probable strokes are left out, unless nobody knows");
+  f.add("proposed", &arguments->proposed, "Add the edges that no view shows but others imply");
   f.add("deflection", &arguments->deflection, "of the extent", 1e-7, 0.1,
         "Largest distance of a chord to its curve in OBJ");
   f.add("spacing", &arguments->spacing, "of the extent", 1e-5, 1, "Distance of the samples in PLY");

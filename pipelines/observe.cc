@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
 
-#include "sketches/curve.h"
+#include "sketches/covariance.h"
 
 namespace sketchsplat {
 namespace {
@@ -58,6 +61,17 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, 
   return s;
 }
 
+namespace {
+
+// More would be noise, and take room in the file.
+double six_digits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5e", x);
+  return std::strtod(text, nullptr);
+}
+
+}  // namespace
+
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
                     double spacing_px, int min_views) {
   Observation o;
@@ -70,21 +84,33 @@ Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOpt
   return o;
 }
 
-void record_evidence(const Observation& observation, Sketch* sketch) {
+void record_evidence(const Observation& o, const EdgeWorld& world, double reach_px,
+                     Sketch* sketch) {
+  std::vector<Sighting> sightings;
+  sightings.reserve(o.matches.matches.size());
+  for (const SampleMatch& m : o.matches.matches)
+    sightings.push_back({m.sample, m.view, m.edgel,
+                         distance_gradient(world, m, o.samples.position.col(m.sample)),
+                         m.distance_px});
+  CovarianceOptions options;
+  options.reach_px = reach_px;
+  const std::vector<StrokeCovariance> covariance =
+      stroke_covariances(*sketch, o.layout, sightings, options);
   for (int i = 0; i < sketch->size(); ++i) {
-    const StrokeStats& s = observation.strokes[i];
+    const StrokeStats& s = o.strokes[i];
     Evidence& e = sketch->evidence[i];
     e.opacity = s.cover;
     e.support_views = s.views;
     e.rms_px = s.rms_px;
-    // The weakest direction across the curve, averaged over its samples.
-    double information = 0;
-    for (int k = observation.layout.first[i]; k < observation.layout.first[i + 1]; ++k) {
-      const Eigen::Vector3d t = observation.samples.tangent.col(k);
-      const Eigen::Matrix3d& H = observation.matches.information[k];
-      information += 0.5 * (H.trace() - t.dot(H * t));
-    }
-    e.sigma = information > 0 ? std::max(s.rms_px, 1e-3) / std::sqrt(information) : 0;
+    e.sigma = covariance[i].sigma;
+    e.determined = covariance[i].determined;
+    e.covariance.clear();
+    for (double c : upper_triangle(covariance[i].matrix)) e.covariance.push_back(six_digits(c));
+    std::set<int> views;
+    for (int m = o.matches.first[o.layout.first[i]]; m < o.matches.first[o.layout.first[i + 1]];
+         ++m)
+      views.insert(o.matches.matches[m].view);
+    e.views.assign(views.begin(), views.end());
   }
 }
 

@@ -40,7 +40,9 @@ Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOpt
 StrokeStats summarise(const EdgeWorld& world, const Observation& observation, int stroke,
                       int min_views, const std::vector<std::vector<char>>* ignored);
 
-/// Copies what was seen into the sketch's evidence (opacity = cover).
-void record_evidence(const Observation& observation, Sketch* sketch);
+/// Copies what was seen into the sketch's evidence (opacity = cover), with the covariance of every
+/// stroke from the edgels it was matched with within `reach_px`. Not the confidence.
+void record_evidence(const Observation& observation, const EdgeWorld& world, double reach_px,
+                     Sketch* sketch);
 
 }  // namespace sketchsplat

@@ -177,6 +177,7 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
   f->add("regularize", &o->regularize.on,
          "Let strokes share directions, planes, axes and radii where that is simpler");
+  f->add("min-confidence", &o->min_confidence, "", 0, 1, "Less probable strokes are left out");
 }
 
 void list_fields(CadOptions* o, Fields* f) {

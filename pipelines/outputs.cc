@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "datasets/errors.h"
 #include "pipelines/atomic_file.h"
@@ -15,6 +17,8 @@
 namespace sketchsplat {
 namespace fs = std::filesystem;
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::string bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -55,29 +59,30 @@ void remove_old_overlays(const std::string& folder) {
   }
 }
 
-// As JSON: [{"kind":"parallel","strokes":[0,3]}, ...].
-std::string regularities_json(const std::vector<Regularity>& regularities) {
-  std::string out;
-  for (const Regularity& r : regularities) {
-    out += std::string(out.empty() ? "" : ",") + "{\"kind\":\"" + relation_name(r.kind) +
-           "\",\"strokes\":[";
-    for (size_t i = 0; i < r.strokes.size(); ++i)
-      out += (i ? "," : "") + std::to_string(r.strokes[i]);
-    out += "]}";
-  }
-  return "[" + out + "]";
+Json json_of(const std::vector<Regularity>& regularities) {
+  Json out = Json::array();
+  for (const Regularity& r : regularities)
+    out.push_back({{"kind", relation_name(r.kind)}, {"strokes", r.strokes}});
+  return out;
 }
 
 void write_sketch(const std::string& folder, const Reconstruction& reconstruction,
                   const Scene& scene, const std::string& options_json,
                   const OutputOptions& options) {
   const Sketch& sketch = reconstruction.sketch;
-  const std::string extra = std::string("{\"program\":\"sketchsplat\",\"version\":\"") +
-                            SKETCHSPLAT_VERSION + "\",\"options\":" + options_json +
-                            ",\"regularities\":" +
-                            regularities_json(reconstruction.report.regularities) + "}";
+  Json extra = {{"program", "sketchsplat"}, {"version", SKETCHSPLAT_VERSION}};
+  extra["options"] = Json::parse(options_json);
+  extra["regularities"] = json_of(reconstruction.report.regularities);
+  extra["views"] = reconstruction.views;
+  if (reconstruction.proposed.size() > 0) {
+    std::ostringstream proposed;
+    write_sketch_json(proposed, reconstruction.proposed);
+    extra["proposed"] = Json::parse(proposed.str());
+  }
+  // Names of files may hold bytes that are no UTF-8.
+  const std::string members = extra.dump(-1, ' ', false, Json::error_handler_t::replace);
   write_atomically(folder + "/sketch.json",
-                   [&](std::ostream& out) { write_sketch_json(out, sketch, extra); });
+                   [&](std::ostream& out) { write_sketch_json(out, sketch, members); });
   write_atomically(folder + "/parametric_edges.json",
                    [&](std::ostream& out) { write_parametric_edges(out, sketch); });
   write_atomically(folder + "/sketch.obj", [&](std::ostream& out) { write_obj(out, sketch); });

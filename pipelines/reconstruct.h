@@ -11,6 +11,9 @@ namespace sketchsplat {
 struct Reconstruction {
   Sketch sketch;
   RunReport report;
+  /// Edges that the sketch implies and no view shows, see propose.h; no part of it.
+  Sketch proposed;
+  std::vector<std::string> views;  ///< names of those that Evidence::views counts
 };
 
 /// The edges of the object in the scene, at least one. Throws TooLittleError if there is none,

@@ -82,6 +82,7 @@ Json curves_json(const Sketch& sketch) {
          {"support_views", e.support_views},
          {"rms_px", e.rms_px},
          {"sigma", e.sigma},
+         {"confidence", std::isnan(e.confidence) ? Json() : Json(e.confidence)},
          {"points", visible ? points_json(sketch, s, length, extent) : Json::array()}});
   }
   return curves;
@@ -143,6 +144,8 @@ std::string report_json(const ReportInput& input) {
   json["counts"] = counts_json(input);
   json["stages"] = stages_json(run);
   json["rounds"] = rounds;
+  json["strokes"] = Json::array();
+  for (const Numbers& stroke : run.strokes) json["strokes"].push_back(object_of(stroke));
   json["warnings"] = run.warnings;
   json["options"] = Json::parse(input.options_json);
   return dump(json, 2) + "\n";

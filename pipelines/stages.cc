@@ -6,6 +6,7 @@
 
 #include "datasets/errors.h"
 #include "edges/link.h"
+#include "pipelines/confidence.h"
 #include "pipelines/detectors.h"
 #include "pipelines/kinds.h"
 #include "pipelines/observe.h"
@@ -166,6 +167,46 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
   return round;
 }
 
+namespace {
+
+// Relations among the strokes that stay.
+void renumber(const std::vector<bool>& stays, std::vector<Regularity>* kept) {
+  std::vector<int> now;
+  int next = 0;
+  for (const bool s : stays) now.push_back(s ? next++ : -1);
+  for (Regularity& r : *kept) {
+    for (int& s : r.strokes) s = now[s];
+    r.strokes.erase(std::remove(r.strokes.begin(), r.strokes.end(), -1), r.strokes.end());
+  }
+  kept->erase(std::remove_if(kept->begin(), kept->end(),
+                             [](const Regularity& r) { return r.strokes.size() < 2; }),
+              kept->end());
+}
+
+// Fills in the confidence and drops what is less probable than wanted; says how many.
+int drop_unsure(const Observation& observation, const EdgeWorld& world, double least,
+                Sketch* sketch, std::vector<Regularity>* kept, RunReport* report) {
+  const std::vector<StrokeFeatures> features = stroke_features(*sketch, world, observation);
+  record_confidence(features, sketch);
+  for (int i = 0; i < sketch->size(); ++i) {
+    const double confidence = sketch->evidence[i].confidence;
+    if (confidence < least) continue;
+    report->strokes.push_back(features[i].named());
+    report->strokes.back().push_back({"confidence", confidence});
+  }
+  const int before = sketch->size();
+  std::vector<bool> stays;
+  for (const Evidence& e : sketch->evidence) stays.push_back(!(e.confidence < least));
+  renumber(stays, kept);
+  *sketch = keep_strokes(*sketch, stays);
+  if (before > 0 && sketch->size() == 0)
+    throw TooLittleError("expected strokes as probable as --min-confidence, found " +
+                         std::to_string(before) + " less probable ones");
+  return before - sketch->size();
+}
+
+}  // namespace
+
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
@@ -184,12 +225,14 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
   match.reach_px = 1.0;
   const Observation o =
       observe(out, world, match, options.polish.spacing_px, options.select.min_views);
-  record_evidence(o, &out);
+  record_evidence(o, world, match.reach_px, &out);
+  const int unsure = drop_unsure(o, world, options.min_confidence, &out, &regular.kept, report);
   report->counts.push_back({"strokes", double(out.size())});
   report->counts.push_back({"ends_joined", double(closed.joined)});
   report->counts.push_back({"lines_bridged", double(closed.bridged)});
   report->counts.push_back({"arcs_rounded", double(closed.rounded)});
   count_regularities(regular, report);
+  report->counts.push_back({"unsure", double(unsure)});
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
   stage.result(std::to_string(out.size()) + " strokes");
   return out;

@@ -61,6 +61,11 @@ Json json_of(const Sketch& sketch, int i) {
   out["rms_px"] = e.rms_px;
   out["sigma"] = e.sigma;
   if (!std::isnan(e.confidence)) out["confidence"] = e.confidence;
+  if (!e.views.empty()) out["views"] = e.views;
+  if (!e.covariance.empty()) {
+    out["determined"] = e.determined;
+    out["covariance"] = e.covariance;
+  }
   return out;
 }
 
@@ -149,6 +154,16 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
   e.rms_px = reader.number(j, "rms_px", e.rms_px, where);
   e.sigma = reader.number(j, "sigma", e.sigma, where);
   e.confidence = reader.number(j, "confidence", e.confidence, where);
+  if (j.contains("views"))
+    for (const Json& v : reader.array(j, "views", where))
+      e.views.push_back(reader.integer(v, "an index of a view in " + where));
+  if (j.contains("covariance"))
+    for (const Json& c : reader.array(j, "covariance", where)) {
+      if (!c.is_number()) reader.fail("numbers as covariance of " + where, Reader::summary(c));
+      e.covariance.push_back(c.get<double>());
+    }
+  if (j.contains("determined"))
+    e.determined = reader.integer(j["determined"], "a count as determined in " + where);
   sketch->add_stroke(kind, ends[0], ends[1], points, e);
 }
 

@@ -2,8 +2,10 @@
 #include "sketches/sketch.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 
 namespace sketchsplat {
 namespace {
@@ -107,6 +109,18 @@ std::vector<std::string> validate(const Sketch& sketch) {
     if (e.support_views < 0 || !std::isfinite(e.rms_px) || !std::isfinite(e.sigma) ||
         e.rms_px < 0 || e.sigma < 0)
       complain(int(i), "has negative or infinite evidence");
+    if (!e.views.empty() && e.views[0] < 0) complain(int(i), "is seen by a view below 0");
+    if (!std::is_sorted(e.views.begin(), e.views.end(), std::less_equal<int>()))
+      complain(int(i), "lists its views out of order");
+    const size_t n = i < sketch.strokes.size() ? 3 * num_controls(sketch.strokes[i].kind) : 0;
+    if (!e.covariance.empty() && e.covariance.size() != n * (n + 1) / 2)
+      complain(int(i), "has a covariance of another size");
+    for (double c : e.covariance)
+      if (!std::isfinite(c)) {
+        complain(int(i), "has an infinite covariance");
+        break;
+      }
+    if (e.determined < 0 || e.determined > int(n)) complain(int(i), "determines too much");
   }
   const auto in_range = [&](int node) { return node >= 0 && node < sketch.nodes.cols(); };
   std::vector<bool> node_used(sketch.nodes.cols()), handle_used(sketch.handles.cols());

@@ -32,6 +32,10 @@ constexpr int num_handles(StrokeKind kind) {
 constexpr bool is_closed(StrokeKind kind) {
   return kind == StrokeKind::kCircle || kind == StrokeKind::kEllipse;
 }
+/// Control points, ends included.
+constexpr int num_controls(StrokeKind kind) {
+  return num_handles(kind) + (is_closed(kind) ? 0 : 2);
+}
 const char* kind_name(StrokeKind kind);                      ///< "line", "arc", ...
 bool parse_kind(const std::string& name, StrokeKind* kind);  ///< false if there is no such kind
 
@@ -48,9 +52,15 @@ struct Evidence {
   double opacity = 1.0;   ///< share of its visible length that lies on edges, in [0, 1]
   int support_views = 0;  ///< views that see it
   double rms_px = 0;      ///< root mean square distance to the edgels that it explains
-  double sigma = 0;       ///< standard deviation of its position, world units
+  /// Largest standard deviation of a point of it, across it, world units.
+  double sigma = 0;
   /// Probability that it is an edge of the object, in [0, 1]; NaN if unknown.
   double confidence = std::numeric_limits<double>::quiet_NaN();
+  std::vector<int> views = {};  ///< that see it, ascending: indices into a list kept elsewhere
+  /// Upper triangle of the covariance of its control points, and how many directions of it the
+  /// images determine, see sketches/covariance.h. Empty if unknown.
+  std::vector<double> covariance = {};
+  int determined = 0;
 };
 
 /// Curves over shared nodes: strokes that meet hold the same column of `nodes`. World units.

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "pipelines/options.h"
 #include "tests/pipelines/program.h"
@@ -48,6 +50,36 @@ TEST_F(Chain, WritesEveryFileItPromisesAndNothingElse) {
                                                    "sketch.obj", "sketch.step", "edge_points.ply",
                                                    "report.json", "report.html"));
   EXPECT_EQ(overlays, OutputOptions().overlays);
+}
+
+TEST_F(Chain, EveryStrokeHasConfidenceCovarianceAndViewsAndTheUnsureCanBeLeftOut) {
+  ASSERT_EQ(run("reconstruct " + scene_ + " -q --overlays 0 --out " + in_folder("all")).status, 0);
+  const json all = json_in("all/sketch.json");
+  std::vector<double> confidence;
+  for (const json& stroke : all["strokes"]) {
+    confidence.push_back(stroke["confidence"]);
+    EXPECT_EQ(stroke["views"].size(), stroke["support_views"]);
+    EXPECT_LT(stroke["views"].back(), all["views"].size());
+    EXPECT_GE(stroke["covariance"].size(), 21u);
+    EXPECT_GE(stroke["determined"], 4);
+  }
+  std::vector<double> sorted = confidence;
+  std::sort(sorted.begin(), sorted.end());
+  const double least = sorted[sorted.size() / 2];
+  const int sure = int(std::count_if(confidence.begin(), confidence.end(),
+                                     [&](double c) { return c >= least; }));
+  ASSERT_LT(sure, int(confidence.size()));
+  std::ostringstream text;
+  text.precision(17);
+  text << least;
+  ASSERT_EQ(run("reconstruct " + scene_ + " -q --overlays 0 --min-confidence " + text.str() +
+                " --out " + in_folder("sure"))
+                .status,
+            0);
+  EXPECT_EQ(int(json_in("sure/sketch.json")["strokes"].size()), sure);
+  const json report = json_in("sure/report.json");
+  EXPECT_EQ(report["counts"]["unsure"], int(confidence.size()) - sure);
+  EXPECT_EQ(int(report["strokes"].size()), sure);
 }
 
 TEST_F(Chain, FindsTheEdgesOfThePart) {
