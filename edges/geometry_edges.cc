@@ -216,13 +216,6 @@ Thresholds measure_noise(const GeometryFields& f, const GeometryOptions& options
   return t;
 }
 
-// The contour of a round surface: towards it the surface turns away from the line of sight, and
-// the squared cosine falls linearly to nothing.
-bool is_rim(const Side& near) {
-  const double inner = near.facing + near.facing_slope * near.extent;
-  return near.extent >= 4.5 && near.facing_slope > 0 && inner > 0.03 && near.facing < 0.25 * inner;
-}
-
 struct Measured {
   Edgel edgel;
   bool rim = false;
@@ -246,7 +239,7 @@ bool measure_outline(const GeometryFields& f, const Place& p, Measured* out) {
   const double s = step.ok && std::abs(step.s) < kMoves ? step.s : 0;
   out->edgel = edgel_at(p, s, step.sigma, 1, 0);
   out->edgel.outline = true;
-  out->rim = is_rim(fit_side(f, p, +1));
+  out->rim = is_rim(f, p, +1);
   return true;
 }
 
@@ -269,7 +262,7 @@ bool measure_occlusion(const GeometryFields& f, Place p, const Thresholds& t, Me
   if (!step.ok || std::abs(step.s) > kMoves) return false;
   if (!forward) p.nx = -p.nx, p.ny = -p.ny;
   out->edgel = edgel_at(p, step.s, step.sigma, jump, threshold);
-  out->rim = is_rim(near);
+  out->rim = is_rim(f, p, +1);
   return true;
 }
 
@@ -287,8 +280,9 @@ void meet_planes(const Side& a, const Side& b, const Thresholds& t, double unit,
 bool measure_crease(const GeometryFields& f, const Place& p, const Thresholds& t, Measured* out) {
   const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
   if (a.samples < 4 || b.samples < 4) return false;
-  const double turn = turn_of(a, b);
-  if (turn < t.crease) return false;
+  // What the steady turn of either side adds over the smeared band is no crease.
+  const double turn = turn_of(a, b), steady = std::max(a.normal_slope.norm(), b.normal_slope.norm());
+  if (turn < t.crease + kBand * steady) return false;
   const Vector3d d = b.normal - a.normal;
   std::vector<StepSample> samples;
   for_each_pixel(f, p, -std::min(kBand, a.extent), std::min(kBand, b.extent),

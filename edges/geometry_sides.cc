@@ -12,12 +12,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kSmeared = 2.2;  // [px] of either side that renderers mix with the other
-constexpr double kLinear = 4.5;   // [px] of extent from which slopes can be told from noise
 
 // How far the side goes: until the activity, having fallen, rises again, or the object ends.
-double extent_of(const GeometryFields& f, const Place& p, int sign) {
+double extent_of(const GeometryFields& f, const Place& p, int sign, double longest) {
   float lowest = 1e9f;
-  for (double s = 0.5; s <= kLongestSide; s += 0.5) {
+  for (double s = 0.5; s <= longest; s += 0.5) {
     const int x = int(std::lround(p.x + sign * s * p.nx));
     const int y = int(std::lround(p.y + sign * s * p.ny));
     if (x < 0 || y < 0 || x >= f.valid.cols || y >= f.valid.rows || !f.valid(y, x)) return s - 0.5;
@@ -25,11 +24,7 @@ double extent_of(const GeometryFields& f, const Place& p, int sign) {
     if (s > 1 && a > 2 * lowest + 0.5f) return s - 1;
     lowest = std::min(lowest, a);
   }
-  return kLongestSide;
-}
-
-Vector3d normal_at(const GeometryFields& f, const cv::Point& at) {
-  return {f.normal[0](at), f.normal[1](at), f.normal[2](at)};
+  return longest;
 }
 
 // Slopes of 1 / depth that the normal implies: on a plane n.x = d it is n.r / d, r the ray.
@@ -43,41 +38,77 @@ void slopes_of_normal(const GeometryFields& f, const Place& p, Side* side) {
   side->inverse_t = side->inverse * (gy * p.nx - gx * p.ny);
 }
 
+// Squared cosine between normal and line of sight in a part of a side: by the mean normal and by
+// the plane through the depths, of which the mean counts.
+bool facing_in(const GeometryFields& f, const Place& p, double from, double to, double* facing) {
+  Matrix3d A = Matrix3d::Zero();
+  Vector3d b = Vector3d::Zero(), normal = Vector3d::Zero();
+  int n = 0;
+  for_each_pixel(f, p, from, to, [&](double s, double t, const cv::Point& at) {
+    const Vector3d basis(1, s, t);
+    A += basis * basis.transpose();
+    b += basis * f.inverse(at);
+    normal += Vector3d(f.normal[0](at), f.normal[1](at), f.normal[2](at));
+    ++n;
+  });
+  if (n < 6) return false;
+  const double s = 0.5 * (from + to);
+  const Vector3d plane = A.ldlt().solve(b), ray = f.camera.ray({p.x + s * p.nx, p.y + s * p.ny});
+  const double w = plane[0] + plane[1] * s, cosine = normal.normalized().dot(ray) / ray.norm();
+  if (!(w > 0)) return false;
+  // The normal that the slopes of 1 / depth imply, scaled so that its product with the ray is 1.
+  const double gx = f.camera.fx * (plane[1] * p.nx - plane[2] * p.ny) / w;
+  const double gy = f.camera.fy * (plane[1] * p.ny + plane[2] * p.nx) / w;
+  const Vector3d steep(gx, gy, 1 - gx * ray.x() - gy * ray.y());
+  *facing = 0.5 * (cosine * cosine + 1 / (steep.squaredNorm() * ray.squaredNorm()));
+  return true;
+}
+
 }  // namespace
+
+bool is_rim(const GeometryFields& f, const Place& p, int sign) {
+  constexpr double kLongest = 10, kFirst = 1.5;  // [px]
+  const double end = extent_of(f, p, sign, kLongest), middle = 0.5 * (kFirst + end);
+  if (end < kLinear) return false;
+  double outer, inner;
+  const auto facing = [&](double from, double to, double* value) {
+    return sign > 0 ? facing_in(f, p, from, to, value) : facing_in(f, p, -to, -from, value);
+  };
+  if (!facing(kFirst, middle, &outer) || !facing(middle, end, &inner)) return false;
+  const double slope = (inner - outer) / (0.5 * (end - kFirst));
+  const double at_edge = outer - slope * 0.5 * (kFirst + middle), at_end = at_edge + slope * end;
+  return slope * end > 0.03 && at_edge < 0.3 * at_end;
+}
 
 Side fit_side(const GeometryFields& f, const Place& p, int sign) {
   Side side;
-  side.extent = extent_of(f, p, sign);
+  side.extent = extent_of(f, p, sign, kLongestSide);
   if (side.extent < 1) return side;
   const double from = std::min(kSmeared, 0.5 * side.extent);
   const double lo = sign > 0 ? from : -side.extent, hi = sign > 0 ? side.extent : -from;
   Matrix3d A = Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 5> B = Eigen::Matrix<double, 3, 5>::Zero();
+  Eigen::Matrix<double, 3, 4> B = Eigen::Matrix<double, 3, 4>::Zero();
   double squares = 0;
   for_each_pixel(f, p, lo, hi, [&](double s, double t, const cv::Point& at) {
-    const Vector3d basis(1, s, t), n = normal_at(f, at);
-    const Vector3d ray = f.camera.ray({double(at.x), double(at.y)});
-    const double cosine = n.dot(ray) / ray.norm(), w = f.inverse(at);
+    const Vector3d basis(1, s, t);
+    const double w = f.inverse(at);
     A += basis * basis.transpose();
-    Eigen::Matrix<double, 1, 5> values;
-    values << n.x(), n.y(), n.z(), w, cosine * cosine;
-    B += basis * values;
+    B += basis * Eigen::RowVector4d(f.normal[0](at), f.normal[1](at), f.normal[2](at), w);
     squares += w * w;
     ++side.samples;
   });
   if (side.samples < 4) return side;
-  const Eigen::Matrix<double, 1, 5> mean = B.row(0) / side.samples;
+  const Eigen::RowVector4d mean = B.row(0) / side.samples;
   if (side.extent >= kLinear && side.samples >= 8) {
-    const Eigen::Matrix<double, 3, 5> fit = A.ldlt().solve(B);
+    const Eigen::Matrix<double, 3, 4> fit = A.ldlt().solve(B);
     side.normal = fit.block<1, 3>(0, 0).transpose();
     side.normal_slope = fit.block<1, 3>(1, 0).transpose();
     side.inverse = fit(0, 3), side.inverse_s = fit(1, 3), side.inverse_t = fit(2, 3);
-    side.facing = fit(0, 4), side.facing_slope = sign * fit(1, 4);
     side.residual =
         std::sqrt(std::max(0.0, squares - fit.col(3).dot(B.col(3))) / (side.samples - 3));
   } else {
     side.normal = mean.head<3>().transpose();
-    side.inverse = mean(3), side.facing = mean(4);
+    side.inverse = mean(3);
     slopes_of_normal(f, p, &side);
     side.inverse -= side.inverse_s * A(0, 1) / side.samples + side.inverse_t * A(0, 2) / side.samples;
   }

@@ -35,15 +35,20 @@ struct Side {
   int samples = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(), normal_slope = Eigen::Vector3d::Zero();
   double inverse = 0, inverse_s = 0, inverse_t = 0;
-  double facing = 0, facing_slope = 0;  ///< squared cosine between normal and line of sight, in |s|
   double residual = 0;                  ///< root mean square of 1 / depth about the plane
   double inverse_at(double s, double t) const { return inverse + inverse_s * s + inverse_t * t; }
 };
 
 constexpr double kLongestSide = 7.0;  // [px]
+constexpr double kLinear = 4.5;  // [px] of extent from which slopes can be told from noise
 
 /// Fits the side of negative (-1) or positive (+1) s.
 Side fit_side(const GeometryFields& fields, const Place& place, int sign);
+
+/// Does a round surface turn away from the line of sight here (its contour, which moves with the
+/// view)? Towards a contour the squared cosine between normal and line of sight falls linearly to
+/// nothing; at an edge it does not reach nothing. Both the normals and the slopes of depth vote.
+bool is_rim(const GeometryFields& fields, const Place& place, int sign);
 
 /// A value across an edge that goes from 0 to 1.
 struct StepSample {
