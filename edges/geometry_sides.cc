@@ -19,9 +19,13 @@ double extent_of(const GeometryFields& f, const Place& p, int sign, double longe
   for (double s = 0.5; s <= longest; s += 0.5) {
     const int x = int(std::lround(p.x + sign * s * p.nx));
     const int y = int(std::lround(p.y + sign * s * p.ny));
-    if (x < 0 || y < 0 || x >= f.valid.cols || y >= f.valid.rows || !f.valid(y, x)) return s - 0.5;
+    if (x < 0 || y < 0 || x >= f.valid.cols || y >= f.valid.rows) return s - 0.5;
+    if (!f.valid(y, x)) {
+      if (s > 1) return s - 0.5;
+      continue;  // an outline runs between its pixels
+    }
     const float a = f.activity(y, x);
-    if (s > 1 && a > 2 * lowest + 0.5f) return s - 1;
+    if (s > 1 && a > 1.5f * lowest + 0.3f) return s - 1;
     lowest = std::min(lowest, a);
   }
   return longest;
