@@ -2,10 +2,14 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "datasets/image.h"
 
 namespace sketchsplat {
+
+struct Scene;
+struct View;
 
 /// The geometry that one view sees, a value per pixel, sampled at the pixel's centre.
 struct GeometryMaps {
@@ -16,5 +20,16 @@ struct GeometryMaps {
   int width() const { return depth.width; }
   int height() const { return depth.height; }
 };
+
+/// Reads depth/<name>.exr (one channel), normal/<name>.exr (x, y, z in the camera frame above) and,
+/// if it is there, mask/<name>.png of the scene; without a mask the object is where depth is. <name>
+/// is the image's name without its ending, or what precedes "_colors" in it. Normals come from
+/// `normals` instead if that is not empty: a folder of normal maps (see normal_map.h). Throws
+/// InputError, also if a map has another size than the view.
+GeometryMaps read_geometry_maps(const Scene& scene, const View& view,
+                                const std::string& normals = "");
+
+/// A file about a view, by the names above: `folder`/<name>`ending`; empty if there is none.
+std::string file_of_view(const std::string& folder, const View& view, const std::string& ending);
 
 }  // namespace sketchsplat
