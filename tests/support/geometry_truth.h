@@ -2,13 +2,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
-#include <vector>
 
 #include "datasets/geometry_maps.h"
-#include "datasets/synthetic/noise.h"
 #include "datasets/synthetic/synthesize.h"
 
 namespace sketchsplat::test {
@@ -34,40 +33,6 @@ inline GeometryMaps exact_maps(const SyntheticScene& scene, int k) {
       for (int c = 0; c < 3; ++c) maps.normal[c].at(x, y) = float(n[c]);
     }
   return maps;
-}
-
-/// The visible pieces of the true edges in a view [px]: what a ray from just outside of the edge to
-/// the camera meets nothing on the way.
-inline std::vector<Eigen::Matrix2Xd> visible_edges(const SyntheticScene& scene, int k) {
-  const View& view = scene.unit_views[k];
-  const Eigen::Vector3d eye = view.center_in_world();
-  const double e = scene.options.extent, lift = 3e-4;
-  std::vector<Eigen::Matrix2Xd> out;
-  for (const TruthCurve& curve : scene.truth.curves) {
-    std::vector<Eigen::Vector2d> run;
-    const auto flush = [&] {
-      if (run.size() >= 2) {
-        Eigen::Matrix2Xd m(2, run.size());
-        for (size_t i = 0; i < run.size(); ++i) m.col(i) = run[i];
-        out.push_back(m);
-      }
-      run.clear();
-    };
-    for (Eigen::Index i = 0; i < curve.points.cols(); ++i) {
-      const Eigen::Vector3d p = curve.points.col(i) / e - Eigen::Vector3d::Constant(0.5);
-      Eigen::Vector3d from = p + lift * curve.outward.col(i);
-      if (curve.outward.col(i).isZero()) from += lift * (eye - p).normalized();
-      double depth;
-      const Eigen::Vector2d q = view.project(p, &depth);
-      if (!view.camera.contains(q) ||
-          scene.tracer.blocked(from.cast<float>(), eye.cast<float>()))
-        flush();
-      else
-        run.push_back(q);
-    }
-    flush();
-  }
-  return out;
 }
 
 struct Degradation {
