@@ -57,12 +57,15 @@ GeometryMaps read_geometry_maps(const Scene& scene, const View& view, const std:
   GeometryMaps maps;
   const std::string depth = path_of(scene.folder + "/depth", view, ".exr");
   maps.depth = std::move(read_channels(depth, 1, view.camera)[0].values);
-  if (normals.empty()) {
-    const std::string path = path_of(scene.folder + "/normal", view, ".exr");
+  std::error_code none;
+  const std::string inner = scene.folder + "/" + normals;
+  const std::string folder = fs::is_directory(inner, none) ? inner : normals;
+  const std::string path = file_of_view(folder, view, ".exr");
+  if (!path.empty()) {
     std::vector<FloatChannel> channels = read_channels(path, 3, view.camera);
     for (int c = 0; c < 3; ++c) maps.normal[c] = std::move(channels[c].values);
   } else {
-    maps.normal = read_normal_map(path_of(normals, view, ".png"), view.camera);
+    maps.normal = read_normal_map(path_of(folder, view, ".png"), view.camera);
   }
   const std::string mask = file_of_view(scene.folder + "/mask", view, ".png");
   if (mask.empty()) {

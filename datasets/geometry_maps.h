@@ -23,11 +23,12 @@ struct GeometryMaps {
 
 /// Reads depth/<name>.exr (one channel), normal/<name>.exr (x, y, z in the camera frame above) and,
 /// if it is there, mask/<name>.png of the scene; without a mask the object is where depth is. <name>
-/// is the image's name without its ending, or what precedes "_colors" in it. Normals come from
-/// `normals` instead if that is not empty: a folder of normal maps (see normal_map.h). Throws
-/// InputError, also if a map has another size than the view.
+/// is the image's name without its ending, or what precedes "_colors" in it. `normals` names the
+/// folder of the normals, in the scene or, if there is none, anywhere; PNG in it are read as
+/// estimators write them (normal_map.h). Throws InputError, also if a map has another size than the
+/// view.
 GeometryMaps read_geometry_maps(const Scene& scene, const View& view,
-                                const std::string& normals = "");
+                                const std::string& normals = "normal");
 
 /// A file about a view, by the names above: `folder`/<name>`ending`; empty if there is none.
 std::string file_of_view(const std::string& folder, const View& view, const std::string& ending);

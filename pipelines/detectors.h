@@ -19,7 +19,7 @@ struct DetectionOptions {
   /// "image": the pictures; "geometry": depth and normal maps in the scene's folder; "maps:NAME":
   /// edge maps of others.
   std::string detector = "image";
-  std::string normals;  ///< folder of normal maps for "geometry"; empty: normal/ of the scene
+  std::string normals = "normal";  ///< folder of normal maps for "geometry", see geometry_maps.h
   DetectOptions detect;
   MapOptions maps;
   GeometryOptions geometry;

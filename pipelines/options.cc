@@ -134,8 +134,8 @@ void list_fields(DetectionOptions* o, Fields* f) {
             "Where edges come from: the images, maps in depth/ and normal/ of the scene, or edge "
             "maps in edge_NAME/");
   f->add("normals", &o->normals, "DIR",
-         "Normal maps for --detector geometry instead of normal/: PNG, x right, y up, z to the "
-         "viewer");
+         "Normal maps for --detector geometry, in the scene or anywhere: EXR, or PNG with x right, y "
+         "up, z to the viewer");
   list_detect(&o->detect, f);
   list_maps(&o->maps, f);
   list_geometry(&o->geometry, f);
