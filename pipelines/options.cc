@@ -131,11 +131,9 @@ void list_geometry(GeometryOptions* o, Fields* f) {
 
 void list_fields(DetectionOptions* o, Fields* f) {
   f->choose("detector", &o->detector, {"image", "geometry", "maps:NAME"},
-            "Where edges come from: the images, maps in depth/ and normal/ of the scene, or edge "
-            "maps in edge_NAME/");
+            "Edges of the images, of depth/ and normal/, or in edge_NAME/");
   f->add("normals", &o->normals, "DIR",
-         "Normal maps for --detector geometry, in the scene or anywhere: EXR, or PNG with x right, y "
-         "up, z to the viewer");
+         "Normals for --detector geometry, in the scene or anywhere");
   list_detect(&o->detect, f);
   list_maps(&o->maps, f);
   list_geometry(&o->geometry, f);
