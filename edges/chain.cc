@@ -31,26 +31,47 @@ int continuation(const Candidates& c, int i, int side, bool signed_normals) {
   return best;
 }
 
+// Follows continuations from `seed`, which leaves by `side` of its tangent. Where normals have no
+// sign, the side changes with it.
+template <typename Visit>
+void follow(const Candidates& c, const std::vector<int> (&next)[2], int seed, int side,
+            const Visit& visit) {
+  for (int i = seed;;) {
+    const int j = next[side][i];
+    if (j < 0 || !visit(j)) return;
+    if (c.edgels[i].nx * c.edgels[j].nx + c.edgels[i].ny * c.edgels[j].ny < 0) side = 1 - side;
+    i = j;
+  }
+}
+
 }  // namespace
 
 void chain_edgels(const Candidates& c, float high, int min_chain, bool signed_normals,
                   EdgelMap* map) {
   const int n = int(c.edgels.size());
-  std::vector<int> next(n), prev(n);
+  std::vector<int> next[2] = {std::vector<int>(n), std::vector<int>(n)};
   for (int i = 0; i < n; ++i) {
-    next[i] = continuation(c, i, +1, signed_normals);
-    prev[i] = continuation(c, i, -1, signed_normals);
+    next[0][i] = continuation(c, i, -1, signed_normals);
+    next[1][i] = continuation(c, i, +1, signed_normals);
   }
   std::vector<bool> done(n);
   map->chain.assign(1, 0);
   for (int seed = 0; seed < n; ++seed) {
     if (done[seed] || c.edgels[seed].strength < high) continue;
     std::vector<int> back, run;
+    const auto append_to = [&done](std::vector<int>* list) {
+      return [&done, list](int i) {
+        if (done[i]) return false;
+        done[i] = true;
+        list->push_back(i);
+        return true;
+      };
+    };
     done[seed] = true;
-    for (int i = seed; (i = prev[i]) >= 0 && !done[i];) done[i] = true, back.push_back(i);
+    follow(c, next, seed, 0, append_to(&back));
     run.assign(back.rbegin(), back.rend());
     run.push_back(seed);
-    for (int i = seed; (i = next[i]) >= 0 && !done[i];) done[i] = true, run.push_back(i);
+    follow(c, next, seed, 1, append_to(&run));
     if (int(run.size()) < min_chain) continue;
     for (int i : run) map->edgels.push_back(c.edgels[i]);
     map->chain.push_back(int(map->edgels.size()));

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
 #include "edges/chain.h"
+#include "edges/gradient.h"
 
 namespace sketchsplat {
 namespace {
@@ -82,20 +83,8 @@ struct Gradient {
 };
 
 Gradient gradient_of(const cv::Mat1f& value, double sigma) {
-  const int radius = std::max(2, int(std::ceil(3.5 * sigma)));
-  cv::Mat1f smooth(1, 2 * radius + 1), slope(1, 2 * radius + 1);
-  double sum = 0, moment = 0;
-  for (int i = -radius; i <= radius; ++i) sum += std::exp(-0.5 * i * i / (sigma * sigma));
-  for (int i = -radius; i <= radius; ++i) {
-    const double g = std::exp(-0.5 * i * i / (sigma * sigma)) / sum;
-    smooth(0, i + radius) = float(g);
-    slope(0, i + radius) = float(i * g);
-    moment += i * i * g;
-  }
-  slope *= float(1.0 / moment);  // exact on a ramp
   Gradient g;
-  cv::sepFilter2D(value, g.x, CV_32F, slope, smooth, cv::Point(-1, -1), 0, cv::BORDER_REPLICATE);
-  cv::sepFilter2D(value, g.y, CV_32F, smooth, slope, cv::Point(-1, -1), 0, cv::BORDER_REPLICATE);
+  gaussian_gradient(value, sigma, &g.x, &g.y);
   cv::magnitude(g.x, g.y, g.magnitude);
   cv::log(cv::max(g.magnitude, 1e-5f), g.log);
   return g;

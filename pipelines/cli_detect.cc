@@ -1,91 +1,96 @@
 // SPDX-License-Identifier: MIT
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "datasets/errors.h"
+#include "datasets/geometry_maps.h"
 #include "datasets/scene.h"
-#include "edges/detect.h"
+#include "eval/edge_maps.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
-#include "pipelines/run_report.h"
-#include "pipelines/stages.h"
+#include "pipelines/detectors.h"
 
 namespace sketchsplat {
 namespace {
 
+constexpr double kTolerance = 1.5;  // [px] of --score
+
 struct DetectArguments {
   std::string scene, out, format;
-  std::string detector = ReconstructOptions().detector;
-  DetectOptions edges;
-  MapOptions maps;
+  DetectionOptions detection;
   double ridge_px = 0.7;  // half of the width in which people and networks draw edges
+  bool score = false;
 };
 
 // DIR/edge_image, DIR/edge_DexiNed: where readers of ABC-NEF look for edge maps.
 std::string map_folder(const DetectArguments& arguments) {
-  const size_t colon = arguments.detector.find(':');
-  const std::string name =
-      colon == std::string::npos ? arguments.detector : arguments.detector.substr(colon + 1);
-  return arguments.out + "/edge_" + name;
+  const std::string& detector = arguments.detection.detector;
+  const size_t colon = detector.find(':');
+  return arguments.out + "/edge_" +
+         (colon == std::string::npos ? detector : detector.substr(colon + 1));
 }
 
-// Returns the number of edgels.
-size_t write_map(const Scene& scene, const View& view, const DetectArguments& arguments) {
-  const EdgelMap map =
-      detect_view(scene, arguments.detector, arguments.edges, arguments.maps, view);
+void write_map(const View& view, const EdgelMap& map, const DetectArguments& arguments) {
   // Edge maps are PNG, whatever the picture was.
   const std::string name = std::filesystem::path(view.name).replace_extension(".png").string();
   write_png(map_folder(arguments) + "/" + name, draw_edge_map(map, arguments.ridge_px));
-  return map.edgels.size();
 }
 
-// What became of a view: edgels found, why it is left out, or what ends the run.
-struct Outcome {
-  size_t edgels = 0;
-  std::string complaint;
-  std::exception_ptr failure;
-};
+EdgeMapScore score_view(const Scene& scene, const View& view, const EdgelMap& map) {
+  const std::string folder = scene.folder + "/edges_visible";
+  const std::string path = file_of_view(folder, view, ".json");
+  if (path.empty()) throw InputError(folder, "the true edges of " + view.name + " (.json)", "none");
+  Eigen::Matrix2Xd points(2, map.edgels.size());
+  for (size_t i = 0; i < map.edgels.size(); ++i) points.col(i) << map.edgels[i].x, map.edgels[i].y;
+  return score_edge_points(points, read_edge_polylines(path), kTolerance);
+}
 
-std::vector<Outcome> write_maps(const Scene& scene, const DetectArguments& arguments,
-                                Stage* stage) {
-  std::vector<Outcome> outcomes(scene.views.size());
+// Maps, and what they are worth if that is asked for, view by view.
+std::vector<EdgeMapScore> write_maps(const Scene& scene, const std::vector<Detection>& found,
+                                     const DetectArguments& arguments) {
+  const int n = int(found.size());
+  std::vector<EdgeMapScore> scores(n);
+  std::vector<std::exception_ptr> failures(n);
 #pragma omp parallel for schedule(dynamic, 1)
-  for (size_t i = 0; i < scene.views.size(); ++i) {
+  for (int i = 0; i < n; ++i) {
+    if (!found[i].complaint.empty()) continue;
     try {
-      outcomes[i].edgels = write_map(scene, scene.views[i], arguments);
-    } catch (const InputError& e) {
-      outcomes[i].complaint = e.what();
+      write_map(scene.views[i], found[i].map, arguments);
+      if (arguments.score) scores[i] = score_view(scene, scene.views[i], found[i].map);
     } catch (...) {
-      outcomes[i].failure = std::current_exception();  // must not leave the parallel loop
+      failures[i] = std::current_exception();  // must not leave the parallel loop
     }
-    stage->step();
   }
-  return outcomes;
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  return scores;
 }
 
 void run_detect(const DetectArguments& arguments, Progress* progress) {
   const Scene scene = open_scene(arguments.scene, arguments.format);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
   prepare_output_folder(map_folder(arguments));
-
-  size_t edgels = 0, maps = 0;
-  {
-    Stage stage("detect", int(scene.views.size()), nullptr, progress);
-    const std::vector<Outcome> outcomes = write_maps(scene, arguments, &stage);
-    for (size_t i = 0; i < outcomes.size(); ++i) {
-      if (outcomes[i].failure) std::rethrow_exception(outcomes[i].failure);
-      edgels += outcomes[i].edgels;
-      maps += outcomes[i].complaint.empty();
-      if (!outcomes[i].complaint.empty())
-        progress->warn("view " + scene.views[i].name + " is left out: " + outcomes[i].complaint);
-    }
-    if (maps == 0)
-      throw InputError(arguments.scene, "a view that can be read", outcomes[0].complaint);
-    stage.result(std::to_string(edgels) + " edgels");
+  const std::vector<Detection> found = detect_all(scene, arguments.detection, nullptr, progress);
+  const std::vector<EdgeMapScore> scores = write_maps(scene, found, arguments);
+  int maps = 0;
+  EdgeMapScore sum;
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (!found[i].complaint.empty()) continue;
+    ++maps;
+    sum.precision += scores[i].precision, sum.recall += scores[i].recall, sum.f += scores[i].f;
+    sum.rms_px += scores[i].rms_px;
   }
   std::cout << map_folder(arguments) << ": " << maps << " edge maps\n";
+  if (!arguments.score) return;
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "within %.1f px, mean of %d views: precision %.1f, recall %.1f, F %.1f, rms %.3f px\n",
+                kTolerance, maps, 100 * sum.precision / maps, 100 * sum.recall / maps,
+                100 * sum.f / maps, sum.rms_px / maps);
+  std::cout << line;
 }
 
 }  // namespace
@@ -102,15 +107,15 @@ Verb detect_verb() {
   out.short_name = "o";
   f.choose("format", &arguments->format, scene_formats(),
            "What the folder is; if left out, its files decide");
-  list_detector(&arguments->detector, &f);
-  list_fields(&arguments->edges, &f);
-  list_fields(&arguments->maps, &f);
+  list_fields(&arguments->detection, &f);
   f.group("Maps");
   f.add("ridge", &arguments->ridge_px, "px", 0.3, 10, "Width (one sigma) in which edges are drawn");
+  f.add("score", &arguments->score, "Compare with the true edges in edges_visible/ of the scene");
   Verb verb;
   verb.name = "detect";
   verb.summary = "Write the edge map of every image";
-  verb.examples = {"sketchsplat detect scenes/part --out out/part"};
+  verb.examples = {"sketchsplat detect scenes/part --out out/part",
+                   "sketchsplat detect scenes/part --out out/part --detector geometry --score"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions&, Progress* progress) {
     run_detect(*arguments, progress);

@@ -96,9 +96,7 @@ void list_polish(PolishOptions* o, Fields* f) {
   f->add("polish-final-reach", &o->final_reach_px, "px", 0.1, 20, "And at last");
 }
 
-}  // namespace
-
-void list_fields(DetectOptions* o, Fields* f) {
+void list_detect(DetectOptions* o, Fields* f) {
   f->group("Edges in the images");
   f->add("detect-sigma", &o->sigma_px, "px", 0.3, 5, "Smoothing of the gradient");
   f->add("detect-high", &o->high_sigma, "times the noise", 1, 100, "Gradient that starts an edge");
@@ -110,7 +108,7 @@ void list_fields(DetectOptions* o, Fields* f) {
   f->add("detect-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
 }
 
-void list_fields(MapOptions* o, Fields* f) {
+void list_maps(MapOptions* o, Fields* f) {
   f->group("Edge maps of others (--detector maps:NAME)");
   f->add("map-sigma", &o->sigma_px, "px", 0.3, 10, "Smoothing before the ridge is looked for");
   f->add("map-high", &o->high, "of strong ridges", 0, 1, "Ridge that starts an edge");
@@ -118,9 +116,27 @@ void list_fields(MapOptions* o, Fields* f) {
   f->add("map-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
 }
 
-void list_detector(std::string* detector, Fields* f) {
-  f->choose("detector", detector, {"image", "maps:NAME"},
-            "Where edges come from: the images, or maps in edge_NAME/ of the scene");
+void list_geometry(GeometryOptions* o, Fields* f) {
+  f->group("Edges of depth and normal maps (--detector geometry)");
+  f->add("geometry-sigma", &o->sigma_px, "px", 0.3, 5, "Smoothing of the gradients");
+  f->add("geometry-jump", &o->jump_px, "pixel footprints", 0.1, 1000,
+         "Step of depth between the planes of two sides that is an edge");
+  f->add("geometry-crease", &o->crease_deg, "deg", 1, 170, "Turn of the normal that is an edge");
+  f->add("geometry-noise", &o->noise, "times the noise", 0, 100, "And what either must exceed");
+  f->add("geometry-rims", &o->rims, "Keep the contours of round surfaces");
+  f->add("geometry-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
+}
+
+}  // namespace
+
+void list_fields(DetectionOptions* o, Fields* f) {
+  f->choose("detector", &o->detector, {"image", "geometry", "maps:NAME"},
+            "Edges of the images, of depth/ and normal/, or in edge_NAME/");
+  f->add("normals", &o->normals, "DIR",
+         "Normals for --detector geometry, in the scene or anywhere");
+  list_detect(&o->detect, f);
+  list_maps(&o->maps, f);
+  list_geometry(&o->geometry, f);
 }
 
 void list_fields(CommonOptions* o, Fields* f) {
@@ -137,9 +153,7 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->choose("preset", &o->preset, preset_names(),
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
-  list_detector(&o->detector, f);
-  list_fields(&o->detect, f);
-  list_fields(&o->maps, f);
+  list_fields(static_cast<DetectionOptions*>(o), f);
   list_lift(&o->lift, f);
   list_link(&o->link, f);
   list_segment(&o->segment, f);

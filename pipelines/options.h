@@ -5,11 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "edges/detect.h"
-#include "edges/detect_map.h"
 #include "edges/lift.h"
 #include "edges/link.h"
 #include "edges/match.h"
+#include "pipelines/detectors.h"
 #include "pipelines/extent.h"
 #include "pipelines/fields.h"
 #include "pipelines/kinds.h"
@@ -32,13 +31,10 @@ struct CommonOptions {
 };
 
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
-struct ReconstructOptions {
+struct ReconstructOptions : DetectionOptions {
   std::string preset = "balanced";
-  std::string detector = "image";  ///< "image" or "maps:NAME"
-  int seed = 0;                    ///< copied from CommonOptions
-  DetectOptions detect;
+  int seed = 0;  ///< copied from CommonOptions
   LiftOptions lift;
-  MapOptions maps;
   LinkOptions link;
   SegmentOptions segment;
   KindOptions kinds;
@@ -71,12 +67,10 @@ struct OutputOptions {
 /// The members of the option structs, as --help, reports and README show them. To add an option: a
 /// member with its default in the struct, and one line in options.cc.
 void list_fields(CommonOptions* options, Fields* fields);
-void list_fields(DetectOptions* options, Fields* fields);
-void list_fields(MapOptions* options, Fields* fields);
+void list_fields(DetectionOptions* options, Fields* fields);
 void list_fields(ReconstructOptions* options, Fields* fields);
 void list_fields(CadOptions* options, Fields* fields);
 void list_fields(OutputOptions* options, Fields* fields);
-void list_detector(std::string* detector, Fields* fields);
 
 /// Sets what the preset (a name in preset_names()) stands for, leaves the rest alone. "balanced" is
 /// the defaults.

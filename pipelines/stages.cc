@@ -2,10 +2,10 @@
 #include "pipelines/stages.h"
 
 #include <cstdio>
-#include <exception>
 
 #include "datasets/errors.h"
 #include "edges/link.h"
+#include "pipelines/detectors.h"
 #include "pipelines/kinds.h"
 #include "pipelines/observe.h"
 #include "sketches/segment.h"
@@ -15,71 +15,28 @@ namespace {
 
 constexpr int kFewestViews = 3;
 
-std::string map_name(const std::string& detector) {
-  return detector.rfind("maps:", 0) == 0 ? detector.substr(5) : "";
-}
-
 }  // namespace
-
-EdgelMap detect_view(const Scene& scene, const std::string& detector, const DetectOptions& detect,
-                     const MapOptions& maps, const View& view) {
-  const std::string name = map_name(detector);
-  if (name.empty()) return detect_edges(read_picture(view), detect);
-  const std::string path = edge_map_path(scene, view, name);
-  if (path.empty())
-    throw InputError(scene.folder, "an edge map '" + name + "' of " + view.name, "none");
-  const Image<float> map = read_grey(path);
-  if (map.width != view.camera.width || map.height != view.camera.height)
-    throw InputError(path, "a map of the image's size",
-                     std::to_string(map.width) + " x " + std::to_string(map.height) + " px");
-  return detect_ridges(map, maps);
-}
 
 EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
                        Progress* progress) {
-  const int n = int(scene.views.size());
-  Stage stage("detect", n, report, progress);
-  std::vector<View> views = scene.views;
-  std::vector<EdgelMap> maps(n);
-  std::vector<std::string> complaints(n);
-  std::vector<std::exception_ptr> failures(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < n; ++i) {
-    try {
-      maps[i] = detect_view(scene, options.detector, options.detect, options.maps, views[i]);
-    } catch (const InputError& e) {
-      complaints[i] = e.what();
-    } catch (...) {
-      failures[i] = std::current_exception();  // must not leave the parallel loop
-    }
-    stage.step();
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
-  std::vector<View> good_views;
-  std::vector<EdgelMap> good_maps;
+  std::vector<Detection> found = detect_all(scene, options, report, progress);
+  std::vector<View> views;
+  std::vector<EdgelMap> maps;
   size_t edgels = 0, with_edges = 0;
-  for (int i = 0; i < n; ++i) {
-    if (!complaints[i].empty()) {
-      warn("view " + views[i].name + " is left out: " + complaints[i], report, progress);
-      continue;
-    }
-    edgels += maps[i].edgels.size();
-    with_edges += !maps[i].edgels.empty();
-    good_views.push_back(std::move(views[i]));
-    good_maps.push_back(std::move(maps[i]));
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (!found[i].complaint.empty()) continue;
+    edgels += found[i].map.edgels.size();
+    with_edges += !found[i].map.edgels.empty();
+    views.push_back(scene.views[i]);
+    maps.push_back(std::move(found[i].map));
   }
-  if (good_views.empty())
-    throw InputError(scene.folder, "an image that can be read", complaints[0]);
   if (with_edges < kFewestViews)
     throw TooLittleError(scene.folder + ": expected edges in at least " +
                          std::to_string(kFewestViews) + " views, found them in " +
                          std::to_string(with_edges));
-  report->counts.push_back({"views", double(good_views.size())});
+  report->counts.push_back({"views", double(views.size())});
   report->counts.push_back({"edgels", double(edgels)});
-  stage.result(std::to_string(edgels) + " edgels in " + std::to_string(good_views.size()) +
-               " views");
-  return make_edge_world(std::move(good_views), std::move(good_maps));
+  return make_edge_world(std::move(views), std::move(maps));
 }
 
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,

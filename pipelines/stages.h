@@ -9,16 +9,11 @@
 
 namespace sketchsplat {
 
-/// Reads every image (or somebody's edge map of it) and finds its edgels. Frames that cannot be
-/// read are left out with a warning. Throws TooLittleError if fewer than three views hold edges,
+/// Finds the edgels of every view by the detector that was chosen (detectors.h). Frames that cannot
+/// be read are left out with a warning. Throws TooLittleError if fewer than three views hold edges,
 /// InputError if no image, or no map of that name, can be read.
 EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
                        Progress* progress);
-
-/// Edgels of one view by the detector: "image" or "maps:NAME". Throws InputError, also if the image
-/// or map has another size than the view.
-EdgelMap detect_view(const Scene& scene, const std::string& detector, const DetectOptions& detect,
-                     const MapOptions& maps, const View& view);
 
 /// The space sweep over all edgels. Throws TooLittleError if no point is found.
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,

@@ -61,7 +61,7 @@ TEST_F(Program, HelpListsEveryOptionWithItsDefault) {
   CommonOptions common;
   Fields fields;
   list_fields(&common, &fields);
-  DetectOptions detect;
+  DetectionOptions detect;
   list_fields(&detect, &fields);
   const std::string help = run("detect --help").out;
   for (const Field& field : fields.list) {

@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: MIT
+#include "edges/geometry_edges.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "edges/chain.h"
+#include "edges/geometry_sides.h"
+#include "edges/gradient.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kPeak = 0.3;     // gradient [per px] of a unit step that is smeared by 1.3 px
+constexpr double kSharp = 2.5;    // [px] width (one sigma) above which a turn is a round surface
+constexpr double kBand = 3.0;     // [px] about a place where its step is fitted
+constexpr double kMoves = 1.5;    // [px] a place may move by when it is measured
+constexpr double kOneEdge = 2.2;  // [px] within which two kinds of evidence are one edge
+
+cv::Mat1f as_mat(const Image<float>& image) {
+  return cv::Mat1f(image.height, image.width, const_cast<float*>(image.data.data())).clone();
+}
+
+// ------------------------------------------------------------------------------------- fields
+
+// A gradient whose sign may mean nothing: magnitude and unit direction by pixel.
+struct Slopes {
+  cv::Mat1f magnitude, x, y;
+};
+
+Slopes slopes_of(const cv::Mat1f& gx, const cv::Mat1f& gy) {
+  Slopes s;
+  cv::magnitude(gx, gy, s.magnitude);
+  const cv::Mat1f safe = cv::max(s.magnitude, 1e-12f);
+  s.x = gx / safe, s.y = gy / safe;
+  return s;
+}
+
+// Values beyond the object: those of its nearest pixel.
+void extend(const cv::Mat1b& valid, const std::vector<cv::Mat1f*>& values) {
+  cv::Mat1f distance;
+  cv::Mat1i label;
+  cv::distanceTransform(valid == 0, distance, label, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
+  double most = 0;
+  cv::minMaxLoc(label, nullptr, &most);
+  std::vector<cv::Point> nearest(size_t(most) + 1);
+  for (int y = 0; y < valid.rows; ++y)
+    for (int x = 0; x < valid.cols; ++x)
+      if (valid(y, x)) nearest[label(y, x)] = {x, y};
+  for (cv::Mat1f* value : values)
+    for (int y = 0; y < valid.rows; ++y)
+      for (int x = 0; x < valid.cols; ++x)
+        if (!valid(y, x)) (*value)(y, x) = (*value)(nearest[label(y, x)]);
+}
+
+bool holds_object(const GeometryMaps& m, size_t i) {
+  const float x = m.normal[0].data[i], y = m.normal[1].data[i], z = m.normal[2].data[i];
+  const float length = x * x + y * y + z * z;
+  return m.alpha.data[i] >= 0.5f && std::isfinite(m.depth.data[i]) && m.depth.data[i] > 0 &&
+         std::isfinite(length) && length > 0.01f;
+}
+
+GeometryFields make_fields(const GeometryMaps& maps, const Camera& camera) {
+  GeometryFields f;
+  f.camera = camera;
+  f.alpha = as_mat(maps.alpha);
+  f.inverse = as_mat(maps.depth);
+  f.valid.create(maps.height(), maps.width());
+  for (int c = 0; c < 3; ++c) f.normal[c] = as_mat(maps.normal[c]);
+  for (size_t i = 0; i < maps.depth.data.size(); ++i) {
+    const int y = int(i / maps.width()), x = int(i % maps.width());
+    f.valid(y, x) = holds_object(maps, i);
+    if (!f.valid(y, x)) continue;
+    f.inverse(y, x) = 1 / maps.depth.data[i];
+    const float length =
+        std::hypot(maps.normal[0].data[i], maps.normal[1].data[i], maps.normal[2].data[i]);
+    for (int c = 0; c < 3; ++c) f.normal[c](y, x) = maps.normal[c].data[i] / length;
+  }
+  return f;
+}
+
+double focal(const Camera& camera) { return std::sqrt(camera.fx * camera.fy); }
+
+// Gradient of depth [pixel footprints per px] beyond what the normals explain.
+Slopes depth_slopes(const GeometryFields& f, double sigma) {
+  cv::Mat1f gx, gy, n[3];
+  gaussian_gradient(f.inverse, sigma, &gx, &gy);
+  for (int c = 0; c < 3; ++c) cv::GaussianBlur(f.normal[c], n[c], cv::Size(), sigma, sigma);
+  const double unit = focal(f.camera);
+  for (int y = 0; y < gx.rows; ++y)
+    for (int x = 0; x < gx.cols; ++x) {
+      const Vector3d normal(n[0](y, x), n[1](y, x), n[2](y, x));
+      const double facing = std::min(normal.dot(f.camera.ray({double(x), double(y)})), -0.2);
+      gx(y, x) = float(unit * (gx(y, x) / f.inverse(y, x) - normal.x() / f.camera.fx / facing));
+      gy(y, x) = float(unit * (gy(y, x) / f.inverse(y, x) - normal.y() / f.camera.fy / facing));
+    }
+  return slopes_of(gx, gy);
+}
+
+// Gradient of the normal [rad per px]: larger eigenvalue of the structure tensor and its direction
+// (Di Zenzo, CVGIP 1986).
+Slopes normal_slopes(const GeometryFields& f, double sigma) {
+  const cv::Size size = f.valid.size();
+  cv::Mat1f xx(size, 0.f), xy(size, 0.f), yy(size, 0.f);
+  for (int c = 0; c < 3; ++c) {
+    cv::Mat1f gx, gy;
+    gaussian_gradient(f.normal[c], sigma, &gx, &gy);
+    xx += gx.mul(gx), xy += gx.mul(gy), yy += gy.mul(gy);
+  }
+  Slopes s;
+  s.magnitude.create(size), s.x.create(size), s.y.create(size);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const double a = xx(y, x), b = xy(y, x), c = yy(y, x);
+      const double root = std::hypot(0.5 * (a - c), b);
+      const double angle = 0.5 * std::atan2(2 * b, a - c);
+      s.magnitude(y, x) = float(std::sqrt(std::max(0.0, 0.5 * (a + c) + root)));
+      s.x(y, x) = float(std::cos(angle)), s.y(y, x) = float(std::sin(angle));
+    }
+  return s;
+}
+
+// --------------------------------------------------------------------------------- candidates
+
+// Maximum along the direction of the quadratic through the 3 x 3 log magnitudes.
+bool localise(const Slopes& s, const cv::Mat1f& log, int x, int y, Place* place) {
+  const float *a = log[y - 1] + x, *b = log[y] + x, *c = log[y + 1] + x;
+  const double nx = s.x(y, x), ny = s.y(y, x);
+  const double slope = 0.5 * ((b[1] - b[-1]) * nx + (c[0] - a[0]) * ny);
+  const double xx = b[1] - 2 * b[0] + b[-1], yy = c[0] - 2 * b[0] + a[0];
+  const double xy = 0.25 * (c[1] - c[-1] - a[1] + a[-1]);
+  const double bend = xx * nx * nx + 2 * xy * nx * ny + yy * ny * ny;
+  if (!(bend < -0.02)) return false;
+  const double shift = -slope / bend;
+  if (std::abs(shift * nx) > 0.6 || std::abs(shift * ny) > 0.6) return false;
+  *place = {x + shift * nx, y + shift * ny, nx, ny};
+  return true;
+}
+
+std::vector<Place> find_places(const Slopes& slopes, double low) {
+  cv::Mat1f log;
+  cv::log(cv::max(slopes.magnitude, 1e-6f), log);
+  std::vector<Place> places;
+  for (int y = 1; y + 1 < log.rows; ++y)
+    for (int x = 1; x + 1 < log.cols; ++x) {
+      Place place;
+      if (slopes.magnitude(y, x) >= low && localise(slopes, log, x, y, &place))
+        places.push_back(place);
+    }
+  return places;
+}
+
+// -------------------------------------------------------------------------------- measurement
+
+double turn_of(const Side& a, const Side& b) {
+  return std::atan2(a.normal.cross(b.normal).norm(), a.normal.dot(b.normal));
+}
+
+// Step of depth from one side's plane to the other's, in footprints of the nearer one.
+double jump_of(const Side& a, const Side& b, double unit) {
+  const double far = std::min(a.inverse, b.inverse), near = std::max(a.inverse, b.inverse);
+  return unit * (near / std::max(far, 1e-3 * near) - 1);
+}
+
+// Difference of the slopes of both sides [footprints per px]: what a place that is one pixel off
+// takes for a step.
+double bend_of(const Side& a, const Side& b, double unit) {
+  return unit * std::abs(a.inverse_s - b.inverse_s) / std::max(a.inverse, b.inverse);
+}
+
+struct Thresholds {
+  double jump_px = 0, crease = 0;      // [footprints], [rad]
+  double depth_noise = 0;              // of a pixel's depth about its plane [footprints]
+};
+
+double median(std::vector<double>* v) {
+  if (v->empty()) return 0;
+  const auto middle = v->begin() + v->size() / 2;
+  std::nth_element(v->begin(), middle, v->end());
+  return *middle;
+}
+
+// Steps and turns where there is none to speak of.
+Thresholds measure_noise(const GeometryFields& f, const GeometryOptions& options,
+                         GeometryNoise* noise) {
+  constexpr int kStride = 6;
+  constexpr double kDirections[4][2] = {{1, 0}, {0, 1}, {M_SQRT1_2, M_SQRT1_2},
+                                        {M_SQRT1_2, -M_SQRT1_2}};
+  const double unit = focal(f.camera);
+  std::vector<double> jumps, turns, residuals;
+  int turn = 0;
+  for (int y = kStride / 2; y < f.valid.rows; y += kStride)
+    for (int x = kStride / 2; x < f.valid.cols; x += kStride) {
+      if (!f.valid(y, x) || f.activity(y, x) > 1) continue;
+      const auto& d = kDirections[turn++ % 4];
+      const Place p{double(x), double(y), d[0], d[1]};
+      const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
+      if (a.extent < kLongestSide || b.extent < kLongestSide) continue;
+      jumps.push_back(jump_of(a, b, unit));
+      turns.push_back(turn_of(a, b));
+      residuals.push_back(unit * a.residual / a.inverse);
+    }
+  GeometryNoise measured;
+  measured.jump_px = median(&jumps) / 0.6745;              // half-normal
+  measured.crease_deg = median(&turns) / 1.1774 / kDegree;  // Rayleigh
+  if (noise) *noise = measured;
+  Thresholds t;
+  t.jump_px = std::max(options.jump_px, options.noise * measured.jump_px);
+  t.crease = kDegree * std::max(options.crease_deg, options.noise * measured.crease_deg);
+  t.depth_noise = median(&residuals);
+  return t;
+}
+
+struct Measured {
+  Edgel edgel;
+  bool rim = false;
+};
+
+Edgel edgel_at(const Place& p, double s, double sigma, double jump, double threshold) {
+  Edgel e;
+  e.x = float(p.x + s * p.nx), e.y = float(p.y + s * p.ny);
+  e.nx = float(p.nx), e.ny = float(p.ny);
+  e.strength = float(jump * jump / (jump * jump + threshold * threshold));
+  e.width = float(std::hypot(sigma, 1.0));
+  return e;
+}
+
+bool measure_outline(const GeometryFields& f, const Place& p, Measured* out) {
+  std::vector<StepSample> samples;
+  for_each_pixel(
+      f, p, -kBand, kBand,
+      [&](double s, double, const cv::Point& at) { samples.push_back({s, f.alpha(at)}); }, true);
+  const Step step = fit_step(samples);
+  const double s = step.ok && std::abs(step.s) < kMoves ? step.s : 0;
+  out->edgel = edgel_at(p, s, step.sigma, 1, 0);
+  out->edgel.outline = true;
+  out->rim = is_rim(f, p, +1);
+  return true;
+}
+
+bool measure_occlusion(const GeometryFields& f, Place p, const Thresholds& t, Measured* out) {
+  Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
+  if (a.samples < 4 || b.samples < 4) return false;
+  const double unit = focal(f.camera), jump = jump_of(a, b, unit);
+  const double threshold = t.jump_px + bend_of(a, b, unit);
+  if (jump < threshold) return false;
+  const bool forward = b.inverse > a.inverse;  // s grows towards the nearer side
+  const Side &near = forward ? b : a, &far = forward ? a : b;
+  std::vector<StepSample> samples;
+  for_each_pixel(f, p, -std::min(kBand, a.extent), std::min(kBand, b.extent),
+                 [&](double s, double tt, const cv::Point& at) {
+                   const double zn = 1 / near.inverse_at(s, tt), zf = 1 / far.inverse_at(s, tt);
+                   const double u = (1.0 / f.inverse(at) - zf) / (zn - zf);
+                   samples.push_back({forward ? s : -s, std::clamp(u, -0.2, 1.2)});
+                 });
+  const Step step = fit_step(samples);
+  if (!step.ok || std::abs(step.s) > kMoves) return false;
+  if (!forward) p.nx = -p.nx, p.ny = -p.ny;
+  out->edgel = edgel_at(p, step.s, step.sigma, jump, threshold);
+  out->rim = is_rim(f, p, +1);
+  return true;
+}
+
+// Where the planes of both sides meet, if that is better known than the turn of the normal.
+void meet_planes(const Side& a, const Side& b, const Thresholds& t, double unit, Step* step) {
+  const double bend = b.inverse_s - a.inverse_s, slope = bend_of(a, b, unit);
+  if (a.extent < 4.5 || b.extent < 4.5 || slope < 0.1) return;
+  const double s = (a.inverse - b.inverse) / bend;
+  const double error = std::max(0.05, t.depth_noise) / slope;  // of extrapolating two planes
+  if (std::abs(s - step->s) > 1.0) return;
+  const double wa = 1 / (error * error), wb = 1 / std::max(0.01, step->error * step->error);
+  step->s = (s * wa + step->s * wb) / (wa + wb);
+}
+
+bool measure_crease(const GeometryFields& f, const Place& p, const Thresholds& t, Measured* out) {
+  const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
+  if (a.samples < 4 || b.samples < 4) return false;
+  // What the steady turn of either side adds over the smeared band is no crease.
+  const double turn = turn_of(a, b), steady = std::max(a.normal_slope.norm(), b.normal_slope.norm());
+  if (turn < t.crease + kBand * steady) return false;
+  const Vector3d d = b.normal - a.normal;
+  std::vector<StepSample> samples;
+  for_each_pixel(f, p, -std::min(kBand, a.extent), std::min(kBand, b.extent),
+                 [&](double s, double, const cv::Point& at) {
+                   const Vector3d n(f.normal[0](at), f.normal[1](at), f.normal[2](at));
+                   const double u = (n - a.normal).dot(d) / d.squaredNorm();
+                   samples.push_back({s, std::clamp(u, -0.3, 1.3)});
+                 });
+  Step step = fit_step(samples);
+  if (!step.ok || step.sigma > kSharp) return false;
+  meet_planes(a, b, t, focal(f.camera), &step);
+  if (std::abs(step.s) > kMoves) return false;
+  out->edgel = edgel_at(p, step.s, step.sigma, turn, t.crease);
+  return true;
+}
+
+// ---------------------------------------------------------------------------------- collection
+
+// Edgels by the pixel that they lie in.
+class Collection {
+ public:
+  Collection(int width, int height) { c_.at = Image<int>(width, height, -1); }
+
+  // Is this edge known already?
+  bool covers(const Place& p) const {
+    const int cx = int(std::lround(p.x)), cy = int(std::lround(p.y)), r = int(kOneEdge) + 1;
+    for (int y = std::max(0, cy - r); y <= std::min(c_.at.height - 1, cy + r); ++y)
+      for (int x = std::max(0, cx - r); x <= std::min(c_.at.width - 1, cx + r); ++x) {
+        if (c_.at.at(x, y) < 0) continue;
+        const Edgel& e = c_.edgels[c_.at.at(x, y)];
+        if (std::hypot(e.x - p.x, e.y - p.y) < kOneEdge &&
+            std::abs(e.nx * p.nx + e.ny * p.ny) > 0.7)
+          return true;
+      }
+    return false;
+  }
+
+  void add(const Measured& m) {
+    const int x = int(std::lround(m.edgel.x)), y = int(std::lround(m.edgel.y));
+    if (x < 0 || y < 0 || x >= c_.at.width || y >= c_.at.height) return;
+    int& at = c_.at.at(x, y);
+    if (at >= 0 && c_.edgels[at].strength >= m.edgel.strength) return;
+    at = int(c_.edgels.size());
+    c_.edgels.push_back(m.edgel);
+    rim_.push_back(m.rim);
+  }
+
+  const Candidates& candidates() const { return c_; }
+  const std::vector<bool>& rims() const { return rim_; }
+
+ private:
+  Candidates c_;
+  std::vector<bool> rim_;
+};
+
+// Measures places of one kind of evidence, but for those where a stronger kind has an edge.
+template <typename Measure>
+void collect(const std::vector<Place>& places, const Measure& measure, Collection* collection) {
+  std::vector<Measured> found;
+  for (const Place& place : places) {
+    Measured m;
+    if (!collection->covers(place) && measure(place, &m)) found.push_back(m);
+  }
+  for (const Measured& m : found) collection->add(m);
+}
+
+// Cuts the rims out of the chains; of neighbours the majority decides.
+void drop_rims(const std::vector<bool>& rim, int min_chain, EdgelMap* map) {
+  constexpr int kVoters = 5;
+  EdgelMap out;
+  out.chain.assign(1, 0);
+  for (int c = 0; c < map->num_chains(); ++c) {
+    const int begin = map->chain[c], end = map->chain[c + 1];
+    for (int i = begin; i <= end; ++i) {
+      int votes = 0, voters = 0;
+      for (int k = std::max(begin, i - kVoters); k <= std::min(end - 1, i + kVoters); ++k)
+        votes += rim[k], ++voters;
+      if (i < end && 2 * votes <= voters) {
+        out.edgels.push_back(map->edgels[i]);
+      } else {
+        if (int(out.edgels.size()) - out.chain.back() < min_chain)
+          out.edgels.resize(out.chain.back());
+        else
+          out.chain.push_back(int(out.edgels.size()));
+      }
+    }
+  }
+  map->edgels = std::move(out.edgels);
+  map->chain = std::move(out.chain);
+}
+
+// Moves edgels along their normals onto the parabola through their neighbours in the chain: maps
+// that are sampled at pixel centres carry up to half a pixel of staircase.
+void smooth_chains(EdgelMap* map) {
+  constexpr int kNeighbours = 5;
+  constexpr double kReach = 5, kMost = 0.6;  // [px]
+  const std::vector<Edgel> raw = map->edgels;
+  for (int c = 0; c < map->num_chains(); ++c)
+    for (int i = map->chain[c]; i < map->chain[c + 1]; ++i) {
+      const Edgel& e = raw[i];
+      Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+      Vector3d b = Vector3d::Zero();
+      bool straight = true;
+      int n = 0;
+      for (int k = std::max(map->chain[c], i - kNeighbours);
+           k <= std::min(map->chain[c + 1] - 1, i + kNeighbours); ++k) {
+        const double dx = raw[k].x - e.x, dy = raw[k].y - e.y;
+        const double t = (-dx * e.ny + dy * e.nx) / kReach, d = dx * e.nx + dy * e.ny;
+        if (std::abs(t) > 1) continue;
+        straight &= std::abs(e.nx * raw[k].nx + e.ny * raw[k].ny) > 0.8;
+        const Vector3d basis(1, t, t * t);
+        A += basis * basis.transpose();
+        b += basis * d;
+        ++n;
+      }
+      if (n < 6 || !straight) continue;  // no parabola through corners
+      const double shift = A.ldlt().solve(b)[0];
+      if (!(std::abs(shift) < kMost)) continue;
+      map->edgels[i].x += float(shift * e.nx), map->edgels[i].y += float(shift * e.ny);
+    }
+}
+
+}  // namespace
+
+EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
+                        const GeometryOptions& options, GeometryNoise* noise) {
+  EdgelMap map;
+  map.width = maps.width(), map.height = maps.height();
+  map.chain.assign(1, 0);
+  if (map.width < 3 || map.height < 3) return map;
+  GeometryFields f = make_fields(maps, camera);
+  map.mask = Image<uint8_t>(map.width, map.height);
+  std::copy(f.valid.begin(), f.valid.end(), map.mask.data.begin());
+  if (cv::countNonZero(f.valid) == 0) return map;
+  extend(f.valid, {&f.inverse, &f.normal[0], &f.normal[1], &f.normal[2]});
+  cv::Mat1f ax, ay;
+  gaussian_gradient(f.alpha, options.sigma_px, &ax, &ay);
+  const Slopes depth = depth_slopes(f, options.sigma_px), normal = normal_slopes(f, options.sigma_px);
+  const double low_depth = kPeak * options.jump_px;
+  const double low_normal = kPeak * options.crease_deg * kDegree;
+  cv::magnitude(depth.magnitude / low_depth, normal.magnitude / low_normal, f.activity);
+  const Thresholds t = measure_noise(f, options, noise);
+
+  Collection found(map.width, map.height);
+  collect(find_places(slopes_of(ax, ay), 0.5 * kPeak),
+          [&](const Place& p, Measured* m) { return measure_outline(f, p, m); }, &found);
+  collect(find_places(depth, low_depth),
+          [&](const Place& p, Measured* m) { return measure_occlusion(f, p, t, m); }, &found);
+  collect(find_places(normal, kPeak * t.crease),
+          [&](const Place& p, Measured* m) { return measure_crease(f, p, t, m); }, &found);
+
+  Candidates candidates = found.candidates();
+  std::vector<bool> rim;
+  for (size_t i = 0; i < candidates.edgels.size(); ++i)  // chains carry the mark through `strength`
+    if (found.rims()[i] && !options.rims) candidates.edgels[i].strength += 2;
+  chain_edgels(candidates, 0.5f, options.min_chain, false, &map);
+  for (Edgel& e : map.edgels) {
+    rim.push_back(e.strength > 1.5f);
+    if (rim.back()) e.strength -= 2;
+  }
+  drop_rims(rim, options.min_chain, &map);
+  smooth_chains(&map);
+  build_lookup(&map, options.reach_px);
+  return map;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/detectors.h"
+
+#include "datasets/errors.h"
+
+namespace sketchsplat {
+namespace {
+
+class ImageDetector : public Detector {
+ public:
+  explicit ImageDetector(const DetectOptions& options) : options_(options) {}
+  EdgelMap detect(const Scene&, const View& view) const override {
+    return detect_edges(read_picture(view), options_);
+  }
+
+ private:
+  DetectOptions options_;
+};
+
+class MapDetector : public Detector {
+ public:
+  MapDetector(const std::string& name, const MapOptions& options)
+      : name_(name), options_(options) {}
+  EdgelMap detect(const Scene& scene, const View& view) const override {
+    const std::string path = edge_map_path(scene, view, name_);
+    if (path.empty())
+      throw InputError(scene.folder, "an edge map '" + name_ + "' of " + view.name, "none");
+    const Image<float> map = read_grey(path);
+    if (map.width != view.camera.width || map.height != view.camera.height)
+      throw InputError(path, "a map of the image's size",
+                       std::to_string(map.width) + " x " + std::to_string(map.height) + " px");
+    return detect_ridges(map, options_);
+  }
+
+ private:
+  std::string name_;
+  MapOptions options_;
+};
+
+class GeometryDetector : public Detector {
+ public:
+  GeometryDetector(const std::string& normals, const GeometryOptions& options)
+      : normals_(normals), options_(options) {}
+  EdgelMap detect(const Scene& scene, const View& view) const override {
+    return geometry_edges(read_geometry_maps(scene, view, normals_), view.camera, options_);
+  }
+
+ private:
+  std::string normals_;
+  GeometryOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_detector(const DetectionOptions& options) {
+  const std::string maps = "maps:";
+  if (options.detector.rfind(maps, 0) == 0)
+    return std::make_unique<MapDetector>(options.detector.substr(maps.size()), options.maps);
+  if (options.detector == "geometry")
+    return std::make_unique<GeometryDetector>(options.normals, options.geometry);
+  return std::make_unique<ImageDetector>(options.detect);
+}
+
+std::vector<Detection> detect_all(const Scene& scene, const DetectionOptions& options,
+                                  RunReport* report, Progress* progress) {
+  const int n = int(scene.views.size());
+  const std::unique_ptr<Detector> detector = make_detector(options);
+  detector->prepare(scene, report, progress);
+  Stage stage("detect", n, report, progress);
+  std::vector<Detection> found(n);
+  std::vector<std::exception_ptr> failures(n);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < n; ++i) {
+    try {
+      found[i].map = detector->detect(scene, scene.views[i]);
+    } catch (const InputError& e) {
+      found[i].complaint = e.what();
+    } catch (...) {
+      failures[i] = std::current_exception();  // must not leave the parallel loop
+    }
+    stage.step();
+  }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  size_t edgels = 0;
+  int read = 0;
+  for (int i = 0; i < n; ++i) {
+    edgels += found[i].map.edgels.size();
+    read += found[i].complaint.empty();
+    if (!found[i].complaint.empty())
+      warn("view " + scene.views[i].name + " is left out: " + found[i].complaint, report, progress);
+  }
+  if (read == 0) throw InputError(scene.folder, "a view that can be read", found[0].complaint);
+  stage.result(std::to_string(edgels) + " edgels in " + std::to_string(read) + " views");
+  return found;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "edges/geometry_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kSize = 96;
+
+Camera camera() { return {kSize, kSize, 200, 200, 47.5, 47.5}; }
+
+struct Plane {
+  Vector3d normal;  // towards the camera
+  double offset;    // normal . x
+};
+
+// Depth and normal of the plane that `which` names for the pixel's ray; -1: nothing.
+GeometryMaps maps_of(const std::vector<Plane>& planes,
+                     const std::function<int(const Vector2d&)>& which) {
+  GeometryMaps maps;
+  maps.depth = maps.alpha = Image<float>(kSize, kSize);
+  maps.normal.fill(Image<float>(kSize, kSize));
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const int k = which({double(x), double(y)});
+      if (k < 0) continue;
+      const Vector3d n = planes[k].normal.normalized();
+      maps.depth.at(x, y) = float(planes[k].offset / n.dot(camera().ray({double(x), double(y)})));
+      maps.alpha.at(x, y) = 1;
+      for (int c = 0; c < 3; ++c) maps.normal[c].at(x, y) = float(n[c]);
+    }
+  return maps;
+}
+
+struct Offsets {
+  double mean = 0, rms = 0;
+  int n = 0;
+};
+// Of edgels in the middle of the image from the line normal . p = c.
+Offsets offsets(const EdgelMap& map, const Vector2d& normal, double c) {
+  Offsets o;
+  for (const Edgel& e : map.edgels) {
+    if (e.x < 12 || e.y < 12 || e.x > kSize - 13 || e.y > kSize - 13) continue;
+    const double d = normal.dot(Vector2d(e.x, e.y)) - c;
+    o.mean += d, o.rms += d * d, ++o.n;
+  }
+  o.mean /= std::max(1, o.n);
+  o.rms = std::sqrt(o.rms / std::max(1, o.n));
+  return o;
+}
+
+TEST(GeometryEdges, FindsADepthStepToAFractionOfAPixelWithItsNearSide) {
+  for (double angle : {20.0, 65.0, 110.0, 250.0}) {
+    const Vector2d n(std::cos(angle * M_PI / 180), std::sin(angle * M_PI / 180));
+    const double c = n.dot(Vector2d(47.2, 48.4));
+    const GeometryMaps maps = maps_of({{{0, 0, -1}, -2.2}, {{0.3, 0.1, -1}, -1.8}},
+                                      [&](const Vector2d& p) { return n.dot(p) > c ? 1 : 0; });
+    const EdgelMap map = geometry_edges(maps, camera(), {});
+    const Offsets o = offsets(map, n, c);
+    EXPECT_GE(o.n, 50) << angle;
+    EXPECT_LT(std::abs(o.mean), 0.06) << angle;
+    EXPECT_LT(o.rms, 0.2) << angle;
+    for (const Edgel& e : map.edgels) EXPECT_GT(n.dot(Vector2d(e.nx, e.ny)), 0.9);
+  }
+}
+
+TEST(GeometryEdges, FindsACreaseWherePlanesMeet) {
+  const Plane a{{0.4, 0.1, -1}, -2}, b{{-0.3, 0.05, -1}, -2};
+  const auto inverse = [&](const Plane& plane, const Vector2d& p) {
+    return plane.normal.normalized().dot(camera().ray(p)) / plane.offset;
+  };
+  const GeometryMaps maps = maps_of(
+      {a, b}, [&](const Vector2d& p) { return inverse(a, p) > inverse(b, p) ? 0 : 1; });
+  // 1 / depth is affine in the pixel, so the planes meet in a line.
+  const auto difference = [&](double x, double y) {
+    return inverse(a, {x, y}) - inverse(b, {x, y});
+  };
+  const double at0 = difference(0, 0);
+  Vector2d n(difference(1, 0) - at0, difference(0, 1) - at0);
+  const double c = -at0 / n.norm();
+  n.normalize();
+  const Offsets o = offsets(geometry_edges(maps, camera(), {}), n, c);
+  EXPECT_GE(o.n, 50);
+  EXPECT_LT(o.rms, 0.1);
+}
+
+TEST(GeometryEdges, ASlantedPlaneIsNoStepHoweverSteep) {
+  for (double slope : {0.5, 2.0, 5.0}) {
+    const GeometryMaps maps =
+        maps_of({{{slope, 0, -1}, -2}}, [](const Vector2d&) { return 0; });
+    EXPECT_TRUE(geometry_edges(maps, camera(), {}).edgels.empty()) << slope;
+  }
+}
+
+// A cylinder about the y axis, seen from afar; `wide` [px] is its radius.
+GeometryMaps cylinder(double radius_px) {
+  GeometryMaps maps = maps_of({{{0, 0, -1}, -20}}, [&](const Vector2d& p) {
+    return std::abs(p.x() - 47.5) < radius_px ? 0 : -1;
+  });
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const double s = (x - 47.5) / radius_px;
+      if (std::abs(s) >= 1) continue;
+      const double c = std::sqrt(1 - s * s);
+      maps.depth.at(x, y) = float(20 - radius_px * 20 / 200 * c);
+      maps.normal[0].at(x, y) = float(s), maps.normal[2].at(x, y) = float(-c);
+    }
+  return maps;
+}
+
+TEST(GeometryEdges, TheContourOfARoundSurfaceIsNoEdgeUnlessAskedFor) {
+  for (double radius : {15.3, 25.4, 40.2}) {
+    EXPECT_TRUE(geometry_edges(cylinder(radius), camera(), {}).edgels.empty()) << radius;
+    GeometryOptions keep;
+    keep.rims = true;
+    const EdgelMap map = geometry_edges(cylinder(radius), camera(), keep);
+    EXPECT_GT(map.edgels.size(), 150u) << radius;
+    for (const Edgel& e : map.edgels) EXPECT_TRUE(e.outline);
+  }
+}
+
+TEST(GeometryEdges, TheOutlineOfAPlaneIsAnEdge) {
+  const GeometryMaps maps = maps_of({{{0.2, 0.1, -1}, -2}}, [](const Vector2d& p) {
+    return (p - Vector2d(47, 48)).norm() < 30.3 ? 0 : -1;
+  });
+  const EdgelMap map = geometry_edges(maps, camera(), {});
+  EXPECT_GT(map.edgels.size(), 150u);
+  for (const Edgel& e : map.edgels) {
+    EXPECT_TRUE(e.outline);
+    EXPECT_NEAR(std::hypot(e.x - 47, e.y - 48), 30.3, 0.6);
+  }
+}
+
+TEST(GeometryEdges, NoiseOfNormalsAndDepthGivesNextToNothingAndIsMeasured) {
+  GeometryMaps maps = maps_of({{{0.3, 0.2, -1}, -2}}, [](const Vector2d&) { return 0; });
+  std::mt19937 rng(3);
+  std::normal_distribution<float> normal(0, 1);
+  for (float& z : maps.depth.data) z *= 1 + 0.5f * normal(rng) / 200;  // half a footprint
+  for (Image<float>& c : maps.normal)
+    for (float& v : c.data) v += 0.2f * normal(rng);
+  GeometryNoise noise;
+  EXPECT_LE(geometry_edges(maps, camera(), {}, &noise).edgels.size(), 12u);
+  EXPECT_GT(noise.crease_deg, 2);
+  EXPECT_GT(noise.jump_px, 0.2);
+}
+
+TEST(GeometryEdges, EmptyMapsAndMapsOfNothingGiveNoEdges) {
+  EXPECT_TRUE(geometry_edges({}, camera(), {}).edgels.empty());
+  const GeometryMaps nothing =
+      maps_of({}, [](const Vector2d&) { return -1; });
+  const EdgelMap map = geometry_edges(nothing, camera(), {});
+  EXPECT_TRUE(map.edgels.empty());
+  EXPECT_EQ(map.num_chains(), 0);
+}
+
+TEST(GeometryEdgeMap, IsThickAtAStepAndBlackOnAPlane) {
+  const GeometryMaps maps = maps_of({{{0, 0, -1}, -2.2}, {{0, 0, -1}, -1.8}},
+                                    [](const Vector2d& p) { return p.x() > 47.2 ? 1 : 0; });
+  const Image<float> map = geometry_edge_map(maps, camera(), {});
+  EXPECT_GT(map.at(47, 48), 0.5f);
+  EXPECT_LT(map.at(20, 48), 0.01f);
+  EXPECT_LT(map.at(80, 48), 0.01f);
+}
+
+}  // namespace
+}  // namespace sketchsplat
