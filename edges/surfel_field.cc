@@ -13,7 +13,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr double kMaxLogit = 4.4;   // beyond it alpha would be clamped and get no gradient
-constexpr double kFirstLogit = 2.0;
+constexpr double kFirstLogit = 3.0;
 constexpr double kScale = 0.6;      // standard deviation of the first surfels, in their spacing
 constexpr double kMinAlpha = 0.05;
 constexpr int kNeighbours = 8;
@@ -68,6 +68,16 @@ struct BatchSum {
   SurfelGradient gradient;
 };
 
+// Of the whole cloud, where only some of it was drawn.
+SurfelInfluence spread_influence(SurfelInfluence part, const std::vector<int>& indices, int n) {
+  std::vector<int> first(n + 1, 0);
+  for (size_t k = 0; k < indices.size(); ++k)
+    first[indices[k] + 1] = part.first[k + 1] - part.first[k];
+  for (int i = 0; i < n; ++i) first[i + 1] += first[i];
+  part.first = std::move(first);
+  return part;
+}
+
 class Trainer {
  public:
   Trainer(const std::vector<TrainingView>& views, const Eigen::AlignedBox3d& bounds,
@@ -84,7 +94,7 @@ class Trainer {
       targets_ = make_targets(views_, std::max(16, options_.side_px >> (2 - level)),
                               bounds_.center());
       if (level == 0) color_from_views();
-      run_level(int(share[level] * total), total, level);
+      run_level(std::max(1, int(share[level] * total)), total, level);
     }
     return field_;
   }
@@ -116,11 +126,13 @@ class Trainer {
     for (int v = 0; v < int(targets_.size()); ++v) {
       SurfelRenderer renderer(field_.drawing);
       const Target& t = targets_[v];
-      renderer.forward(cloud, t.view.view, t.mask);
+      std::vector<int> facing;
+      renderer.forward(facing_surfels(cloud, t.view.view, &facing), t.view.view, t.mask);
       const SurfelInfluence influence = renderer.influence();
       sums[v] = Eigen::Matrix4Xd::Zero(4, n);
-      for (int i = 0; i < n; ++i)
-        for (int k = influence.first[i]; k < influence.first[i + 1]; ++k) {
+      for (size_t f = 0; f < facing.size(); ++f)
+        for (int k = influence.first[f]; k < influence.first[f + 1]; ++k) {
+          const int i = facing[f];
           const double w = influence.weight[k];
           const int p = influence.pixel[k];
           for (int c = 0; c < 3; ++c) sums[v](c, i) += w * t.view.color[c].data[p];
@@ -186,11 +198,15 @@ class Trainer {
     for (int b = 0; b < batch; ++b) {
       SurfelRenderer renderer(field_.drawing);
       const Target& t = targets_[view_of(rendered_ + b)];
-      const SurfelImages& images = renderer.forward(cloud, t.view.view, t.mask);
+      std::vector<int> facing;
+      const SurfelCloud seen = facing_surfels(cloud, t.view.view, &facing);
+      const SurfelImages& images = renderer.forward(seen, t.view.view, t.mask);
       SurfelImages by_images;
+      SurfelGradient gradient;
       each[b].loss =
           surfel_loss(images, t.view, t.mask, t.footprint, loss_, &by_images);
-      renderer.backward(cloud, t.view.view, by_images, &each[b].gradient);
+      renderer.backward(seen, t.view.view, by_images, &gradient);
+      each[b].gradient = spread_gradient(gradient, facing, cloud.size());
     }
     rendered_ += batch;
     for (int b = 1; b < batch; ++b) {  // in the order of the views, whoever drew them
@@ -315,8 +331,9 @@ class Trainer {
     for (int k = 0; k < int(influences.size()); ++k) {
       SurfelRenderer renderer(field_.drawing);
       const Target& t = targets_[view_of(k)];
-      renderer.forward(cloud, t.view.view, t.mask);
-      influences[k] = renderer.influence();
+      std::vector<int> facing;
+      renderer.forward(facing_surfels(cloud, t.view.view, &facing), t.view.view, t.mask);
+      influences[k] = spread_influence(renderer.influence(), facing, cloud.size());
     }
     apply(merge_pairs(field_.surfels, pairs, influence_cosines(influences, pairs),
                       options_.merge_cosine));
@@ -362,7 +379,9 @@ double surfel_field_loss(const SurfelField& field, const std::vector<TrainingVie
   for (const TrainingView& view : views) {
     const Target t = make_target(view, side_px, middle);
     SurfelImages by_images;
-    sum += surfel_loss(renderer.forward(cloud, t.view.view, t.mask), t.view, t.mask, t.footprint,
+    std::vector<int> facing;
+    const SurfelCloud seen = facing_surfels(cloud, t.view.view, &facing);
+    sum += surfel_loss(renderer.forward(seen, t.view.view, t.mask), t.view, t.mask, t.footprint,
                        options, &by_images);
   }
   return sum / std::max<size_t>(1, views.size());
@@ -370,7 +389,9 @@ double surfel_field_loss(const SurfelField& field, const std::vector<TrainingVie
 
 GeometryMaps render_geometry(const SurfelField& field, const View& view) {
   SurfelRenderer renderer(field.drawing);
-  const SurfelImages& images = renderer.forward(field.cloud(), view);
+  std::vector<int> facing;
+  const SurfelImages& images =
+      renderer.forward(facing_surfels(field.cloud(), view, &facing), view);
   GeometryMaps maps;
   const int w = view.camera.width, h = view.camera.height;
   maps.alpha = images.alpha;

@@ -13,7 +13,7 @@ struct SurfelLossOptions {
   double softness = 0.01;   ///< of |rendered - seen|, grey values, > 0
   double alpha = 0.5;       ///< weight of the squared error of alpha
   double consistency = 0.05;  ///< of 1 - cosine between the rendered normal and that of the depth
-  double distortion = 1.0;  ///< of the spread of depth along a ray, in footprints of a pixel
+  double distortion = 0;     ///< of the spread of depth along a ray, in footprints of a pixel
 };
 
 /// The loss of a rendered view and, in `by_images`, its derivatives by the images: color, alpha,

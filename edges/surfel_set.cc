@@ -80,6 +80,40 @@ Eigen::MatrixXd SurfelSet::gradient(const SurfelCloud& by_cloud,
   return g;
 }
 
+SurfelCloud facing_surfels(const SurfelCloud& cloud, const View& view,
+                           std::vector<int>* indices) {
+  constexpr double kGrazing = -0.1;  // cosine; contours are made of what is seen edge-on
+  const Eigen::Vector3d eye = view.center_in_world();
+  indices->clear();
+  for (int i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d to_eye = eye - cloud.center.col(i);
+    if (surfel_normal(cloud.rotation.col(i)).dot(to_eye) > kGrazing * to_eye.norm())
+      indices->push_back(i);
+  }
+  SurfelCloud out = SurfelCloud::zero(int(indices->size()));
+  for (int k = 0; k < out.size(); ++k) {
+    const int i = (*indices)[k];
+    out.center.col(k) = cloud.center.col(i), out.rotation.col(k) = cloud.rotation.col(i);
+    out.log_scale.col(k) = cloud.log_scale.col(i), out.opacity[k] = cloud.opacity[i];
+    out.color.col(k) = cloud.color.col(i), out.skew.col(k) = cloud.skew.col(i);
+  }
+  return out;
+}
+
+SurfelGradient spread_gradient(const SurfelGradient& part, const std::vector<int>& indices,
+                               int n) {
+  SurfelGradient out = SurfelGradient::zero(n);
+  for (size_t k = 0; k < indices.size(); ++k) {
+    const int i = indices[k];
+    out.center.col(i) = part.center.col(k), out.rotation.col(i) = part.rotation.col(k);
+    out.log_scale.col(i) = part.log_scale.col(k), out.opacity[i] = part.opacity[k];
+    out.color.col(i) = part.color.col(k), out.skew.col(i) = part.skew.col(k);
+    out.in_image.col(i) = part.in_image.col(k), out.in_image_abs.col(i) = part.in_image_abs.col(k);
+    out.splitting.col(i) = part.splitting.col(k), out.weight[i] = part.weight[k];
+  }
+  return out;
+}
+
 DensityChange steep_split(const SurfelSet& set, const Eigen::Matrix3Xd& splitting,
                           const Eigen::VectorXd& weight, double min_alpha, double min_weight,
                           int most) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/view.h"
 #include "raster/surfel.h"
 
 namespace sketchsplat {
@@ -22,6 +23,13 @@ struct SurfelSet {
   /// The matrix of a gradient by a cloud and by its albedo.
   static Eigen::MatrixXd gradient(const SurfelCloud& by_cloud, const Eigen::Matrix3Xd& by_albedo);
 };
+
+/// The surfels whose outer side (+ normal) a camera can see, and their indices: of a closed surface
+/// nothing else is visible, and what shines through a surface from behind spoils its depth.
+SurfelCloud facing_surfels(const SurfelCloud& cloud, const View& view, std::vector<int>* indices);
+
+/// Back to one column per surfel of the whole cloud; the others' are 0.
+SurfelGradient spread_gradient(const SurfelGradient& part, const std::vector<int>& indices, int n);
 
 /// What density control does: columns that stay, in their order, then new ones.
 struct DensityChange {
