@@ -13,7 +13,7 @@ struct View;
 
 /// The geometry that one view sees, a value per pixel, sampled at the pixel's centre.
 struct GeometryMaps {
-  Image<float> depth;                  ///< along the camera's axis, world units; <= 0: nothing there
+  Image<float> depth;  ///< along the camera's axis, world units; <= 0: nothing there
   std::array<Image<float>, 3> normal;  ///< camera frame (x right, y down, z forward), unit, towards
                                        ///< the camera; zero: nothing there
   Image<float> alpha;                  ///< coverage by the object, [0, 1]
@@ -22,9 +22,9 @@ struct GeometryMaps {
 };
 
 /// Reads depth/<name>.exr (one channel), normal/<name>.exr (x, y, z in the camera frame above) and,
-/// if it is there, mask/<name>.png of the scene; without a mask the object is where depth is. <name>
-/// is the image's name without its ending, or what precedes "_colors" in it. `normals` names the
-/// folder of the normals, in the scene or, if there is none, anywhere; PNG in it are read as
+/// if it is there, mask/<name>.png of the scene; without a mask the object is where depth is.
+/// <name> is the image's name without its ending, or what precedes "_colors" in it. `normals` names
+/// the folder of the normals, in the scene or, if there is none, anywhere; PNG in it are read as
 /// estimators write them (normal_map.h). Throws InputError, also if a map has another size than the
 /// view.
 GeometryMaps read_geometry_maps(const Scene& scene, const View& view,

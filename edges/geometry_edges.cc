@@ -175,8 +175,8 @@ double bend_of(const Side& a, const Side& b, double unit) {
 }
 
 struct Thresholds {
-  double jump_px = 0, crease = 0;      // [footprints], [rad]
-  double depth_noise = 0;              // of a pixel's depth about its plane [footprints]
+  double jump_px = 0, crease = 0;  // [footprints], [rad]
+  double depth_noise = 0;          // of a pixel's depth about its plane [footprints]
 };
 
 double median(std::vector<double>* v) {
@@ -190,8 +190,8 @@ double median(std::vector<double>* v) {
 Thresholds measure_noise(const GeometryFields& f, const GeometryOptions& options,
                          GeometryNoise* noise) {
   constexpr int kStride = 6;
-  constexpr double kDirections[4][2] = {{1, 0}, {0, 1}, {M_SQRT1_2, M_SQRT1_2},
-                                        {M_SQRT1_2, -M_SQRT1_2}};
+  constexpr double kDirections[4][2] = {
+      {1, 0}, {0, 1}, {M_SQRT1_2, M_SQRT1_2}, {M_SQRT1_2, -M_SQRT1_2}};
   const double unit = focal(f.camera);
   std::vector<double> jumps, turns, residuals;
   int turn = 0;
@@ -207,7 +207,7 @@ Thresholds measure_noise(const GeometryFields& f, const GeometryOptions& options
       residuals.push_back(unit * a.residual / a.inverse);
     }
   GeometryNoise measured;
-  measured.jump_px = median(&jumps) / 0.6745;              // half-normal
+  measured.jump_px = median(&jumps) / 0.6745;               // half-normal
   measured.crease_deg = median(&turns) / 1.1774 / kDegree;  // Rayleigh
   if (noise) *noise = measured;
   Thresholds t;
@@ -235,7 +235,10 @@ bool measure_outline(const GeometryFields& f, const Place& p, Measured* out) {
   std::vector<StepSample> samples;
   for_each_pixel(
       f, p, -kBand, kBand,
-      [&](double s, double, const cv::Point& at) { samples.push_back({s, f.alpha(at)}); }, true);
+      [&](double s, double, const cv::Point& at) {
+        samples.push_back({s, f.alpha(at)});
+      },
+      true);
   const Step step = fit_step(samples);
   const double s = step.ok && std::abs(step.s) < kMoves ? step.s : 0;
   out->edgel = edgel_at(p, s, step.sigma, 1, 0);
@@ -282,7 +285,8 @@ bool measure_crease(const GeometryFields& f, const Place& p, const Thresholds& t
   const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
   if (a.samples < 4 || b.samples < 4) return false;
   // What the steady turn of either side adds over the smeared band is no crease.
-  const double turn = turn_of(a, b), steady = std::max(a.normal_slope.norm(), b.normal_slope.norm());
+  const double turn = turn_of(a, b),
+               steady = std::max(a.normal_slope.norm(), b.normal_slope.norm());
   if (turn < t.crease + kBand * steady) return false;
   const Vector3d d = b.normal - a.normal;
   std::vector<StepSample> samples;
@@ -421,19 +425,23 @@ EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
   extend(f.valid, {&f.inverse, &f.normal[0], &f.normal[1], &f.normal[2]});
   cv::Mat1f ax, ay;
   gaussian_gradient(f.alpha, options.sigma_px, &ax, &ay);
-  const Slopes depth = depth_slopes(f, options.sigma_px), normal = normal_slopes(f, options.sigma_px);
+  const Slopes depth = depth_slopes(f, options.sigma_px),
+               normal = normal_slopes(f, options.sigma_px);
   const double low_depth = kPeak * options.jump_px;
   const double low_normal = kPeak * options.crease_deg * kDegree;
   cv::magnitude(depth.magnitude / low_depth, normal.magnitude / low_normal, f.activity);
   const Thresholds t = measure_noise(f, options, noise);
 
   Collection found(map.width, map.height);
-  collect(find_places(slopes_of(ax, ay), 0.5 * kPeak),
-          [&](const Place& p, Measured* m) { return measure_outline(f, p, m); }, &found);
-  collect(find_places(depth, low_depth),
-          [&](const Place& p, Measured* m) { return measure_occlusion(f, p, t, m); }, &found);
-  collect(find_places(normal, kPeak * t.crease),
-          [&](const Place& p, Measured* m) { return measure_crease(f, p, t, m); }, &found);
+  collect(
+      find_places(slopes_of(ax, ay), 0.5 * kPeak),
+      [&](const Place& p, Measured* m) { return measure_outline(f, p, m); }, &found);
+  collect(
+      find_places(depth, low_depth),
+      [&](const Place& p, Measured* m) { return measure_occlusion(f, p, t, m); }, &found);
+  collect(
+      find_places(normal, kPeak * t.crease),
+      [&](const Place& p, Measured* m) { return measure_crease(f, p, t, m); }, &found);
 
   Candidates candidates = found.candidates();
   std::vector<bool> rim;

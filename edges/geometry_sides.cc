@@ -11,10 +11,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr float kRise = 1.5f, kSureRise = 2.5f;  // the latter where staircases of alpha are near
 constexpr double kSmeared = 2.2;  // [px] of either side that renderers mix with the other
 
-// How far the side goes: until the activity, having fallen, rises again, or the object ends.
-double extent_of(const GeometryFields& f, const Place& p, int sign, double longest) {
+// How far the side goes: until the activity, having fallen, is `rise` times as large again, or the
+// object ends.
+double extent_of(const GeometryFields& f, const Place& p, int sign, double longest, float rise) {
   float lowest = 1e9f;
   for (double s = 0.5; s <= longest; s += 0.5) {
     const int x = int(std::lround(p.x + sign * s * p.nx));
@@ -25,7 +27,7 @@ double extent_of(const GeometryFields& f, const Place& p, int sign, double longe
       continue;  // an outline runs between its pixels
     }
     const float a = f.activity(y, x);
-    if (s > 1 && a > 1.5f * lowest + 0.3f) return s - 1;
+    if (s > 1 && a > rise * lowest + 0.3f) return s - 1;
     lowest = std::min(lowest, a);
   }
   return longest;
@@ -72,7 +74,7 @@ bool facing_in(const GeometryFields& f, const Place& p, double from, double to, 
 
 bool is_rim(const GeometryFields& f, const Place& p, int sign) {
   constexpr double kLongest = 10, kFirst = 1.5;  // [px]
-  const double end = extent_of(f, p, sign, kLongest), middle = 0.5 * (kFirst + end);
+  const double end = extent_of(f, p, sign, kLongest, kSureRise), middle = 0.5 * (kFirst + end);
   if (end < kLinear) return false;
   double outer, inner;
   const auto facing = [&](double from, double to, double* value) {
@@ -86,7 +88,7 @@ bool is_rim(const GeometryFields& f, const Place& p, int sign) {
 
 Side fit_side(const GeometryFields& f, const Place& p, int sign) {
   Side side;
-  side.extent = extent_of(f, p, sign, kLongestSide);
+  side.extent = extent_of(f, p, sign, kLongestSide, kRise);
   if (side.extent < 1) return side;
   const double from = std::min(kSmeared, 0.5 * side.extent);
   const double lo = sign > 0 ? from : -side.extent, hi = sign > 0 ? side.extent : -from;
@@ -114,7 +116,8 @@ Side fit_side(const GeometryFields& f, const Place& p, int sign) {
     side.normal = mean.head<3>().transpose();
     side.inverse = mean(3);
     slopes_of_normal(f, p, &side);
-    side.inverse -= side.inverse_s * A(0, 1) / side.samples + side.inverse_t * A(0, 2) / side.samples;
+    side.inverse -=
+        side.inverse_s * A(0, 1) / side.samples + side.inverse_t * A(0, 2) / side.samples;
   }
   side.normal.normalize();
   return side;

@@ -35,12 +35,12 @@ struct Side {
   int samples = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(), normal_slope = Eigen::Vector3d::Zero();
   double inverse = 0, inverse_s = 0, inverse_t = 0;
-  double residual = 0;                  ///< root mean square of 1 / depth about the plane
+  double residual = 0;  ///< root mean square of 1 / depth about the plane
   double inverse_at(double s, double t) const { return inverse + inverse_s * s + inverse_t * t; }
 };
 
 constexpr double kLongestSide = 7.0;  // [px]
-constexpr double kLinear = 4.5;  // [px] of extent from which slopes can be told from noise
+constexpr double kLinear = 4.5;       // [px] of extent from which slopes can be told from noise
 
 /// Fits the side of negative (-1) or positive (+1) s.
 Side fit_side(const GeometryFields& fields, const Place& place, int sign);

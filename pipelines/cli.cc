@@ -30,11 +30,12 @@ void register_fields(CLI::App* app, const std::vector<Field>& fields, Texts* tex
     std::string flags = field.positional ? name : "--" + name;
     if (!field.short_name.empty()) flags = "-" + field.short_name + "," + flags;
     if (field.several) {
-      app->add_option_function<std::vector<std::string>>(
+      CLI::Option* option = app->add_option_function<std::vector<std::string>>(
           flags, [=](const std::vector<std::string>& given) {
             std::string& all = (*texts)[name];
             for (const std::string& text : given) all += (all.empty() ? "" : "\n") + text;
           });
+      option->allow_extra_args(field.positional);  // --name takes one at a time
       continue;
     }
     CLI::Option* option = app->add_option_function<std::string>(
@@ -53,6 +54,8 @@ void assign_texts(const std::vector<Field>& fields, const Texts& texts) {
 }
 
 void check_required(const Verb& verb, const Texts& texts) {
+  for (const Field& field : verb.fields)
+    if (field.alone && texts.count(field.name)) return;
   for (const Field& field : verb.fields) {
     if (!field.required || texts.count(field.name)) continue;
     const std::string what = field.positional ? field.unit : "--" + field.name + " " + field.unit;

@@ -44,4 +44,7 @@ Verb export_verb();
 Verb synthesize_verb();
 Verb bench_verb();
 
+/// The file of the plug-in that makes synthetic scenes.
+std::string synthesis_plugin_path();
+
 }  // namespace sketchsplat

@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
 
 #include "pipelines/atomic_file.h"
-#include "pipelines/bench.h"
-#include "pipelines/bench_report.h"
+#include "pipelines/bench/accuracy_chart.h"
+#include "pipelines/bench/axis_report.h"
+#include "pipelines/bench/run.h"
 #include "pipelines/cli.h"
 
 namespace sketchsplat {
 namespace {
 
 struct BenchArguments {
-  std::string scenes, out;  // scenes one a line
-  std::string presets = "fast,balanced,accurate";
+  std::string scenes;  // one a line
+  std::string out, suite, scene_folder;
+  std::string presets, detectors;
   std::string with;
   bool ablation = false;
-  int repeats = 1;
+  int repeats = 0;
 };
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -38,43 +41,118 @@ OptionTexts option_texts(const std::string& text) {
   return options;
 }
 
-// Wrong options are said before hours of work, not after.
-void check_options(const BenchOptions& options) {
-  for (const BenchVariant& variant : options.variants) {
-    ReconstructOptions method;
-    set_options(variant.options, &method);
-    set_options(options.options, &method);
+// A suite of the scenes on the command line.
+Suite suite_of_scenes(const std::string& scenes) {
+  Suite suite;
+  suite.keep = true;
+  for (const std::string& folder : split(scenes, '\n')) {
+    const std::filesystem::path path = std::filesystem::path(folder + "/.").lexically_normal();
+    const std::string stem = path.parent_path().filename();
+    const auto taken = [&](const std::string& name) {
+      for (const BenchScene& scene : suite.scenes)
+        if (scene.name == name) return true;
+      return false;
+    };
+    std::string name = stem;
+    for (int k = 2; taken(name); ++k) name = stem + "_" + std::to_string(k);
+    suite.scenes.push_back({name, folder, "", {}});
   }
-  if (options.variants.empty()) throw UsageError("--presets: expected at least one");
+  return suite;
+}
+
+// Wrong options are said before hours of work, not after.
+Suite suite_of(const BenchArguments& arguments) {
+  if (arguments.suite.empty() == arguments.scenes.empty())
+    throw UsageError("bench needs either SCENES or --suite FILE");
+  Suite suite =
+      arguments.suite.empty() ? suite_of_scenes(arguments.scenes) : read_suite(arguments.suite);
+  if (!arguments.presets.empty() || !arguments.detectors.empty()) {
+    const std::vector<std::string> presets = split(arguments.presets, ','),
+                                   detectors = split(arguments.detectors, ',');
+    suite.variants = preset_variants(
+        arguments.presets.empty() ? preset_names() : presets,
+        arguments.detectors.empty() ? std::vector<std::string>{"image"} : detectors);
+    if (suite.variants.empty())
+      throw UsageError("--presets, --detectors: expected at least one of each");
+  }
+  if (arguments.ablation) suite.variants = ablation_variants();
+  if (arguments.repeats > 0) suite.repeats = arguments.repeats;
+  check_suite_options(suite);
+  Suite with;
+  with.reconstruct = option_texts(arguments.with);
+  check_suite_options(with);
+  return suite;
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  write_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
+// Results of one axis stand together.
+template <typename Result, typename Draw>
+void write_axis_charts(const std::vector<Result>& results, const std::string& folder, Draw draw) {
+  for (size_t i = 0; i < results.size();) {
+    std::vector<Result> axis;
+    for (; i < results.size() && (axis.empty() || results[i].axis == axis[0].axis); ++i)
+      axis.push_back(results[i]);
+    write_chart(draw(axis), folder + "/" + axis[0].axis->name);
+  }
+}
+
+void report_axes(const Suite& suite, const std::vector<BenchRow>& rows, const std::string& out) {
+  const std::vector<AxisResult> limits = axis_results(suite, rows);
+  const std::vector<GrowthResult> growth = growth_results(suite, rows);
+  if (!limits.empty()) {
+    write_text(out + "/limits.md", limits_markdown(limits));
+    write_text(out + "/limits.csv", limits_csv(limits));
+    write_axis_charts(limits, out, axis_chart);
+    std::cout << limits_markdown(limits);
+  }
+  if (!growth.empty()) {
+    write_text(out + "/growth.md", growth_markdown(growth));
+    write_text(out + "/growth.csv", growth_csv(growth));
+    write_axis_charts(growth, out, growth_chart);
+    std::cout << growth_markdown(growth);
+  }
+}
+
+void report_scenes(std::vector<BenchRow> rows, const std::string& out, bool ablation) {
+  write_chart(accuracy_chart(rows), out + "/chart");
+  const std::vector<BenchRow> means = mean_rows(rows);
+  rows.insert(rows.end(), means.begin(), means.end());
+  std::vector<std::string> columns = {"F5", "F2", "F1", "fine_F2", "fine_F1", "acc", "comp"};
+  const std::vector<std::string> rest =
+      ablation ? std::vector<std::string>{"structure_strokes", "structure_strokes_per_edge",
+                                          "structure_f", "total", "cpu_seconds"}
+               : std::vector<std::string>{"structure_strokes_per_edge",
+                                          "structure_f",
+                                          "detect",
+                                          "lift",
+                                          "fit",
+                                          "round",
+                                          "polish",
+                                          "write",
+                                          "total",
+                                          "total_per_decode",
+                                          "peak_mb"};
+  columns.insert(columns.end(), rest.begin(), rest.end());
+  std::cout << bench_table(rows, columns);
 }
 
 void run_bench_verb(const BenchArguments& arguments, const CommonOptions& common,
                     Progress* progress) {
-  BenchOptions options;
-  options.scenes = split(arguments.scenes, '\n');
-  options.variants =
-      arguments.ablation ? ablation_variants() : preset_variants(split(arguments.presets, ','));
-  options.options = option_texts(arguments.with);
-  options.out = arguments.out;
-  options.repeats = arguments.repeats;
-  options.seed = common.seed;
-  check_options(options);
-  prepare_output_folder(arguments.out);
-
-  std::vector<BenchRow> rows = run_bench(options, progress);
-  const auto write = [&](const char* name, const std::string& text) {
-    write_atomically(arguments.out + "/" + name, [&](std::ostream& out) { out << text; });
-  };
-  write("rows.csv", bench_csv(rows));
-  write("rows.json", bench_json(rows, options.options));
-  write("chart.svg", bench_chart(rows));
-  const std::vector<BenchRow> means = mean_rows(rows);
-  rows.insert(rows.end(), means.begin(), means.end());
-  const std::vector<std::string> ablation_columns = {
-      "F5",          "F2",    "F1", "fine_F1", "Acc", "Comp", "strokes", "strokes_per_edge",
-      "structure_F", "total", "cpu"};
-  std::cout << bench_table(rows,
-                           arguments.ablation ? ablation_columns : std::vector<std::string>());
+  BenchRun run;
+  run.suite = suite_of(arguments);
+  if (arguments.suite.empty()) run.suite.seeds = {common.seed};
+  run.with = option_texts(arguments.with);
+  run.out = arguments.out;
+  run.scenes = arguments.scene_folder;
+  run.threads = common.threads;
+  const std::vector<BenchRow> rows = run_suite(run, progress);
+  if (run.suite.axes.empty())
+    report_scenes(rows, run.out, arguments.ablation);
+  else
+    report_axes(run.suite, rows, run.out);
 }
 
 }  // namespace
@@ -84,20 +162,29 @@ Verb bench_verb() {
   Fields f;
   f.group("Arguments");
   Field& scenes = f.add("scenes", &arguments->scenes, "SCENES", "Scene folders with ground truth");
-  scenes.required = scenes.positional = scenes.several = true;
+  scenes.positional = scenes.several = true;
+  f.add("suite", &arguments->suite, "FILE",
+        "A list of scenes, parts to synthesize and what is varied, instead of SCENES");
   Field& out = f.add("out", &arguments->out, "DIR",
-                     "The folder for rows.csv, rows.json, chart.svg and all results");
+                     "The folder for tables and charts; rows that it holds are not run again");
   out.required = true;
   out.short_name = "o";
+  f.add("scene-folder", &arguments->scene_folder, "DIR",
+        "The folder of synthesized scenes, which are reused; if left out, scenes/ in --out");
   f.group("What is run");
-  f.add("presets", &arguments->presets, "NAMES", "Presets to compare, with commas");
+  f.add("presets", &arguments->presets, "NAMES",
+        "Presets to compare, with commas; if left out, those of the suite, or all");
+  f.add("detectors", &arguments->detectors, "NAMES",
+        "Detectors to compare, with commas; if left out, those of the suite, or image");
   f.add("ablation", &arguments->ablation, "Compare parts of the method instead of presets");
   f.add("with", &arguments->with, "NAME=VALUE,...", "Options of reconstruct for all runs");
-  f.add("repeats", &arguments->repeats, "runs", 1, 1000, "Of each; the fastest counts");
+  f.add("repeats", &arguments->repeats, "runs", 0, 1000,
+        "Of each; the fastest counts. 0 is what the suite says, or 1");
   Verb verb;
   verb.name = "bench";
-  verb.summary = "Measure accuracy beside time on scenes with ground truth";
+  verb.summary = "Measure accuracy beside time, and where it breaks, with ground truth";
   verb.examples = {"sketchsplat bench scenes/* --out out/bench",
+                   "sketchsplat bench --suite eval/suites/stability.yml --out out/stability",
                    "sketchsplat bench scenes/part --out out/ablation --ablation",
                    "sketchsplat bench scenes/part --out out/bench --presets fast --with "
                    "lift-views=10,rounds=2"};

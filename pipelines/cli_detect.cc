@@ -134,10 +134,11 @@ void run_detect(const DetectArguments& arguments, Progress* progress) {
   std::cout << map_folder(arguments) << ": " << maps << " edge maps\n";
   if (!arguments.score) return;
   char line[160];
-  std::snprintf(line, sizeof line,
-                "within %.1f px, mean of %d views: precision %.1f, recall %.1f, F %.1f, rms %.3f px\n",
-                kTolerance, maps, 100 * sum.precision / maps, 100 * sum.recall / maps,
-                100 * sum.f / maps, sum.rms_px / maps);
+  std::snprintf(
+      line, sizeof line,
+      "within %.1f px, mean of %d views: precision %.1f, recall %.1f, F %.1f, rms %.3f px\n",
+      kTolerance, maps, 100 * sum.precision / maps, 100 * sum.recall / maps, 100 * sum.f / maps,
+      sum.rms_px / maps);
   std::cout << line;
   print_map_errors(scores);
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <dlfcn.h>
 
-#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include "datasets/errors.h"
 #include "datasets/synthetic/outputs.h"
-#include "datasets/synthetic/parts.h"
+#include "datasets/synthetic/part_table.h"
 #include "datasets/synthetic/plugin.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
+#include "pipelines/plugin_path.h"
 #include "pipelines/run_report.h"
 
 namespace sketchsplat {
@@ -18,26 +19,50 @@ namespace {
 
 struct SynthesizeArguments {
   std::string out;
+  std::string parameters;  // NAME=VALUE, one a line
+  bool list_parts = false;
   SynthesizeOptions options;
 };
 
-// Beside the executable, where it is installed, or where it was built.
 const SynthesisPlugin& load_plugin() {
-  namespace fs = std::filesystem;
-  std::error_code none;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
-  for (const fs::path& folder :
-       {bin, bin / ".." / "lib" / "sketchsplat", fs::path(SKETCHSPLAT_SYNTHESIS_FOLDER)}) {
-    void* library = ::dlopen((folder / kSynthesisPluginFile).c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!library) continue;
-    using Get = const SynthesisPlugin*();
-    return *reinterpret_cast<Get*>(::dlsym(library, kSynthesisPluginSymbol))();
+  const std::string path = synthesis_plugin_path();
+  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library)
+    throw std::runtime_error(std::string(kSynthesisPluginFile) + " cannot be loaded: " +
+                             ::dlerror());
+  using Get = const SynthesisPlugin*();
+  return *reinterpret_cast<Get*>(::dlsym(library, kSynthesisPluginSymbol))();
+}
+
+// The user's NAME=VALUE lines for this part.
+PartValues part_values(const std::string& part, const std::string& lines) {
+  PartValues values;
+  std::istringstream in(lines);
+  for (std::string line; std::getline(in, line);) {
+    const size_t equals = line.find('=');
+    Field value;
+    double number = 0;
+    value.name = "param";
+    value.value = &number;
+    if (equals == std::string::npos)
+      throw UsageError("--param: expected NAME=VALUE, got '" + line + "'");
+    assign(value, line.substr(equals + 1));
+    values.push_back({line.substr(0, equals), number});
   }
-  throw std::runtime_error(std::string(kSynthesisPluginFile) + " cannot be loaded: " + ::dlerror());
+  const PartSpec* spec = find_part(part);
+  if (!values.empty() && !spec)
+    throw UsageError("--param: only built-in parts have parameters, " + part + " is none");
+  const std::string wrong = spec ? wrong_values(*spec, values) : "";
+  if (!wrong.empty()) throw UsageError("--param: " + wrong);
+  return values;
 }
 
 void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
                     Progress* progress) {
+  if (arguments.list_parts) {
+    std::cout << part_listing(part_specs());
+    return;
+  }
   SynthesizeOptions& options = arguments.options;
   options.seed = std::uint64_t(common.seed);
   if (options.rig.focal > 0 && options.rig.object_size > 0)
@@ -47,6 +72,7 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
   } catch (const InputError& e) {
     throw UsageError(std::string("--") + e.what());
   }
+  options.parameters = part_values(options.part, arguments.parameters);
   const SynthesisPlugin& plugin = load_plugin();
   const std::unique_ptr<SyntheticScene, void (*)(SyntheticScene*)> made(
       plugin.synthesize(arguments.options), plugin.release);
@@ -59,12 +85,6 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
   }
   std::cout << arguments.out << ": " << scene.views.size() << " views, "
             << scene.truth.curves.size() << " true edges\n";
-}
-
-std::string part_words() {
-  std::string words = "A STEP file, a mesh (OBJ, STL, PLY, OFF) or one of";
-  for (const std::string& name : part_names()) words += " " + name;
-  return words;
 }
 
 void list_camera_fields(SynthesizeOptions* o, Fields* f) {
@@ -116,24 +136,40 @@ void list_object_fields(SynthesizeOptions* o, Fields* f) {
          "Facets of a mesh that meet at more have an edge");
 }
 
+void list_part_fields(SynthesizeArguments* a, Fields* f) {
+  Field& param = f->add("param", &a->parameters, "NAME=VALUE",
+                        "A dimension of a built-in part, otherwise drawn; may be repeated");
+  param.several = true;
+  f->add("list-parts", &a->list_parts, "Print the built-in parts and their dimensions, no scene")
+      .alone = true;
+}
+
 }  // namespace
+
+std::string synthesis_plugin_path() {
+  return plugin_path(kSynthesisPluginFile, SKETCHSPLAT_SYNTHESIS_FOLDER);
+}
 
 Verb synthesize_verb() {
   const auto arguments = std::make_shared<SynthesizeArguments>();
   Fields f;
   f.group("Arguments");
-  f.add("part", &arguments->options.part, "PART", part_words()).positional = true;
+  f.add("part", &arguments->options.part, "PART",
+        "A STEP file, a mesh (OBJ, STL, PLY, OFF) or a built-in part: see --list-parts")
+      .positional = true;
   Field& out = f.add("out", &arguments->out, "SCENE", "The scene folder to write");
   out.required = true;
   out.short_name = "o";
   list_camera_fields(&arguments->options, &f);
   list_picture_fields(&arguments->options, &f);
   list_object_fields(&arguments->options, &f);
+  list_part_fields(arguments.get(), &f);
   Verb verb;
   verb.name = "synthesize";
   verb.summary = "Render a part with exact ground truth as a scene";
   verb.examples = {
       "sketchsplat synthesize --out scenes/part",
+      "sketchsplat synthesize rib-plate --out scenes/narrow --param gap=0.01",
       "sketchsplat synthesize bracket.step --out scenes/bracket --views 30 --noise 3",
       "sketchsplat synthesize bracket.stl --out scenes/bracket --crease-angle 40",
       "sketchsplat synthesize flange --out scenes/hard --style glossy --clutter --jpeg 80"};

@@ -36,7 +36,8 @@ struct Field {
   std::string short_name;            ///< "o": also -o; empty if there is none
   bool required = false;
   bool positional = false;
-  bool several = false;  ///< a positional text that may be given many times, joined by '\n'
+  bool several = false;  ///< a text that may be given many times, joined by '\n'
+  bool alone = false;    ///< a flag that is a task of its own: nothing else is required then
   std::function<void()> applied;  ///< called after a user's value was assigned; may be empty
 };
 

@@ -45,7 +45,8 @@ void list_link(LinkOptions* o, Fields* f) {
 
 void list_segment(SegmentOptions* o, Fields* f) {
   f->group("Cutting into curves");
-  f->add("segment-tolerance", &o->tolerance, "px", 0.05, 20, "Points keep this near to a curve");
+  f->add("segment-sigma", &o->sigma, "px", 0.02, 20, "Standard deviation of lifted points");
+  f->add("price", &o->price, "nat", 0, 100, "Of a parameter, when curves are chosen");
   f->add("segment-corner", &o->corner_deg, "deg", 1, 180, "Turn that ends a curve");
 }
 
@@ -183,6 +184,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_link(&o->link, f);
   list_segment(&o->segment, f);
   f->group("Kinds of strokes");
+  f->add("joint-sigma", &o->rechain.sigma_px, "px", 0.01, 10,
+         "Least standard deviation of what all views say of a place");
   f->add("kind-keep", &o->kinds.keep, "", 0, 2, "Share of its edgels a simpler curve must explain");
   list_select(&o->select, f);
   list_extent(&o->extent, f);

@@ -8,12 +8,14 @@
 #include "edges/lift.h"
 #include "edges/link.h"
 #include "edges/match.h"
+#include "pipelines/close_graph.h"
 #include "pipelines/detectors.h"
 #include "pipelines/extent.h"
 #include "pipelines/fields.h"
 #include "pipelines/kinds.h"
 #include "pipelines/optimize.h"
 #include "pipelines/polish.h"
+#include "pipelines/rechain.h"
 #include "pipelines/select.h"
 #include "sketches/length_unit.h"
 #include "sketches/segment.h"
@@ -43,6 +45,8 @@ struct ReconstructOptions : DetectionOptions {
   OptimizeOptions optimize;
   TopologyOptions topology;
   PolishOptions polish;
+  RechainOptions rechain;
+  CloseOptions close;
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too

@@ -95,6 +95,12 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
   return polish(fit_extents(sketch, world, options.extent), world, early(options));
 }
 
+// Chains of strokes in as few words as their edgels allow.
+Sketch rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
+  const Rechained r = rechain(sketch, world, options.segment, options.rechain);
+  return r.changes > 0 ? polish(r.sketch, world, early(options)) : sketch;
+}
+
 }  // namespace
 
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
@@ -108,7 +114,7 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
   report->counts.push_back({"strokes_lifted", double(first.size())});
   stage.result(std::to_string(chosen.size()) + " of " + std::to_string(first.size()) +
                " strokes stand");
-  return grown(chosen, world, options);
+  return rewritten(grown(chosen, world, options), world, options);
 }
 
 Round run_round(const Sketch& sketch, const EdgeWorld& world,
@@ -127,9 +133,9 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
     const Simplified simpler = simplify(moved.sketch, topology);
     for (const auto& [name, count] : simpler.counts.named()) row.push_back({name, double(count)});
     round.changed = simpler.counts.total() > 0;
-    const Selection chosen =
-        select_strokes(grown(simpler.sketch, world, options), world, options.select);
-    note_verdicts(simpler.sketch, chosen, progress);
+    const Sketch written = rewritten(grown(simpler.sketch, world, options), world, options);
+    const Selection chosen = select_strokes(written, world, options.select);
+    note_verdicts(written, chosen, progress);
     row.push_back({"unexplaining", double(chosen.changes)});
     round.changed |= chosen.changes > 0;
     round.sketch = chosen.sketch;
@@ -143,13 +149,17 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
-  Sketch out = options.final_polish ? polish(sketch, world, options.polish) : sketch;
+  const Closed closed = close_graph(sketch, world, options.close);
+  Sketch out = options.final_polish ? polish(closed.sketch, world, options.polish) : closed.sketch;
   MatchOptions match;
   match.reach_px = 1.0;
   const Observation o =
       observe(out, world, match, options.polish.spacing_px, options.select.min_views);
   record_evidence(o, &out);
   report->counts.push_back({"strokes", double(out.size())});
+  report->counts.push_back({"ends_joined", double(closed.joined)});
+  report->counts.push_back({"lines_bridged", double(closed.bridged)});
+  report->counts.push_back({"arcs_rounded", double(closed.rounded)});
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
   stage.result(std::to_string(out.size()) + " strokes");
   return out;

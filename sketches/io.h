@@ -35,7 +35,7 @@ struct StepOptions {
   std::string name = "sketch";                ///< of the product, as CAD programs show it
   double scale = 1.0;                         ///< units per world unit
   LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
-  std::vector<PlanarFace> faces;              ///< written as such; their strokes bound them
+  std::vector<PlanarFace> faces = {};         ///< written as such; their strokes bound them
 };
 /// AP214 edge-based wireframe: one product, one vertex per junction; LINE, CIRCLE, ELLIPSE,
 /// B_SPLINE_CURVE as such, one CONNECTED_EDGE_SET per unbranched chain; a colour and a layer by

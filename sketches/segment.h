@@ -4,22 +4,50 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "sketches/run_fit.h"
 #include "sketches/sketch.h"
 
 namespace sketchsplat {
 
 struct SegmentOptions {
-  double tolerance = 0.6;    ///< times `unit`: 9 in 10 points of a piece lie this near to its curve
+  double sigma = 0.3;        ///< times `unit`: standard deviation of the points, if not given
+  double price = 3.0;        ///< [nat] of a parameter: half the logarithm of the number of edgels
   double corner_deg = 25.0;  ///< [deg] turn from point to point that ends a piece
   int min_points = 3;        ///< shorter pieces are dropped
   double min_length = 4.0;   ///< times `unit`: so are these
 };
 
-/// Cuts an ordered run of points with tangents into the simplest curves that explain it: first at
-/// corners, then a piece is a line if a line fits, else a circular arc or circle, else a cubic,
-/// else it is split where two pieces fit best. Strokes are appended to `sketch`, with nodes of
-/// their own. `unit` is the length that tolerances are measured in (one pixel at the object), world
-/// units.
+/// Parameters of a curve that goes on from the one before it: where it ends and how it bends.
+constexpr int num_parameters(StrokeKind kind) {
+  return kind == StrokeKind::kLine     ? 3
+         : kind == StrokeKind::kArc    ? 5
+         : kind == StrokeKind::kCircle ? 6
+                                       : 8;
+}
+
+/// Length of a description [nat]: the points' squared distances from the curve in units of 2
+/// sigma^2, each at most 8 (an outlier), and the price of the curve's parameters.
+double description_length(const Eigen::VectorXd& distance, double sigma, StrokeKind kind,
+                          const SegmentOptions& options);
+
+/// Points [first, last) of a run and their curve.
+struct RunPiece {
+  int first = 0, last = 0;
+  RunFit fit;
+  double cost = 0;  ///< description length
+};
+
+/// Cuts an ordered run into the curves whose description is the shortest: lines, arcs, cubics, or
+/// one circle or ellipse if it is closed (then the pieces begin at a cut, and indices go on from n
+/// to 2 n). Dynamic programming over cuts (Bellman 1961), then each cut alone is moved to where it
+/// is best. `points`, `tangents`: 3 x n, `sigma`: of the points, world units.
+std::vector<RunPiece> cut_run(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tangents,
+                              bool closed, double sigma, double unit,
+                              const SegmentOptions& options);
+
+/// Cuts a run of points with tangents at its corners, then each part as cut_run does. Strokes are
+/// appended to `sketch`, with nodes of their own. `unit` is the length that tolerances are measured
+/// in (one pixel at the object), world units.
 void segment_chain(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& tangents, bool closed,
                    double unit, const SegmentOptions& options, Sketch* sketch);
 

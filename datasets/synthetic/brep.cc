@@ -3,10 +3,13 @@
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
+#include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <Eigen/Geometry>
+#include <GProp_GProps.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
@@ -64,7 +67,7 @@ UnitFrame unit_frame(const Brep& brep, const std::string& name) {
   const double longest = (high - low).maxCoeff();
   if (!(longest > 0) || !std::isfinite(longest))
     throw InputError(name, "a shape with an extent", std::to_string(longest));
-  return {(low + high) / 2, 1.0 / longest};
+  return {(low + high) / 2, 1.0 / longest, high - low};
 }
 
 namespace {
@@ -81,10 +84,11 @@ Eigen::Vector3d surface_normal(const BRepAdaptor_Surface& surface, const gp_Pnt2
   return n.normalized();
 }
 
-void add_face(const TopoDS_Face& face, int index, const UnitFrame& frame, SurfaceMesh* mesh) {
+// False if the face has no triangles.
+bool add_face(const TopoDS_Face& face, int index, const UnitFrame& frame, SurfaceMesh* mesh) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) triangles = BRep_Tool::Triangulation(face, location);
-  if (triangles.IsNull()) return;
+  if (triangles.IsNull() || triangles->NbTriangles() == 0) return false;
   const unsigned base = unsigned(mesh->points.size());
   const int n = triangles->NbNodes();
   std::vector<Eigen::Vector3d> point(n), facet(n, Eigen::Vector3d::Zero());
@@ -109,19 +113,63 @@ void add_face(const TopoDS_Face& face, int index, const UnitFrame& frame, Surfac
     mesh->points.push_back(point[i].cast<float>());
     mesh->normals.push_back(normal.cast<float>());
   }
+  return true;
+}
+
+double area_of(const TopoDS_Face& face) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face, properties);
+  return std::abs(properties.Mass());
+}
+
+const char* type_of(const TopoDS_Face& face) {
+  switch (BRepAdaptor_Surface(face, /*Restriction=*/false).GetType()) {
+    case GeomAbs_Plane:
+      return "Plane";
+    case GeomAbs_Cylinder:
+      return "Cylinder";
+    case GeomAbs_Cone:
+      return "Cone";
+    case GeomAbs_Sphere:
+      return "Sphere";
+    case GeomAbs_Torus:
+      return "Torus";
+    case GeomAbs_BezierSurface:
+    case GeomAbs_BSplineSurface:
+      return "BSpline";
+    case GeomAbs_SurfaceOfRevolution:
+      return "Revolution";
+    case GeomAbs_SurfaceOfExtrusion:
+      return "Extrusion";
+    default:
+      return "Other";
+  }
 }
 
 }  // namespace
 
-SurfaceMesh tessellate(const Brep& brep, const UnitFrame& frame, double deflection) {
+SurfaceMesh tessellate(const Brep& brep, const UnitFrame& frame, double deflection,
+                       const std::string& name) {
   constexpr double kAngle =
-      0.25;  // [rad] keeps small fillets round; the deflection rules elsewhere
+      0.25;                       // [rad] keeps small fillets round; the deflection rules elsewhere
+  BRepTools::Clean(*brep.shape);  // what an earlier call left
   BRepMesh_IncrementalMesh(*brep.shape, deflection / frame.scale, /*isRelative=*/false, kAngle,
                            /*isInParallel=*/false);
   TopTools_IndexedMapOfShape faces;
   TopExp::MapShapes(*brep.shape, TopAbs_FACE, faces);
   SurfaceMesh mesh;
-  for (int f = 1; f <= faces.Extent(); ++f) add_face(TopoDS::Face(faces(f)), f - 1, frame, &mesh);
+  int bare = 0;
+  // Slivers that no picture shows may stay without triangles.
+  const double sliver = 1e-8 / (frame.scale * frame.scale);
+  for (int f = 1; f <= faces.Extent(); ++f) {
+    const TopoDS_Face face = TopoDS::Face(faces(f));
+    mesh.types.push_back(type_of(face));
+    if (!add_face(face, f - 1, frame, &mesh) && area_of(face) > sliver) ++bare;
+  }
+  if (bare > 0)
+    throw InputError(
+        name, "faces that can be triangulated",
+        std::to_string(bare) + " of " + std::to_string(faces.Extent()) + " that cannot");
   return mesh;
 }
 

@@ -25,6 +25,7 @@ Brep read_step(const std::string& path);
 struct UnitFrame {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the box, model units
   double scale = 1.0;                                ///< unit lengths per model unit
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();    ///< of the box, model units
   Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return (x - centre) * scale; }
 };
 
@@ -39,9 +40,12 @@ struct SurfaceMesh {
   std::vector<Eigen::Vector3f> normals;          ///< one per point, unit, along the triangles' side
   std::vector<std::array<unsigned, 3>> corners;  ///< one per triangle, into points
   std::vector<int> face;                         ///< one per triangle: which face of the B-rep
+  std::vector<std::string> types;  ///< one per face: "Plane", "Cylinder", ..., "Other"
 };
 
 /// `deflection`: largest distance of triangles from the surface, unit lengths, > 0.
-SurfaceMesh tessellate(const Brep& brep, const UnitFrame& frame, double deflection);
+/// Throws InputError(`name`, ...) if a face that could be seen has no triangles.
+SurfaceMesh tessellate(const Brep& brep, const UnitFrame& frame, double deflection,
+                       const std::string& name = "the part");
 
 }  // namespace sketchsplat

@@ -20,17 +20,23 @@ struct ParametricCurve {
   }
 };
 
-/// What a curve is, whatever it is stored as: exporters write lines and circles as B-splines too.
-/// For a circle or an arc of one, `centre` and `axis` (unit normal times radius) are set, and
-/// `turn` is the angle that the curve covers, signed about the axis.
+/// What a curve is, whatever it is stored as: exporters write lines, circles and ellipses as
+/// B-splines too. Circle, ellipse or an arc of one: p = centre + cos(a) u + sin(a) v, u no shorter
+/// than v and at right angles to it, where a grows along the curve by `turn` in all. A circle's u
+/// points to where the curve begins.
 struct CurveShape {
-  enum Kind { kLine, kCircular, kOther } kind = kOther;
+  enum Kind { kLine, kCircular, kElliptic, kOther } kind = kOther;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  double turn = 0;  ///< [rad]
+  Eigen::Vector3d u = Eigen::Vector3d::Zero(), v = Eigen::Vector3d::Zero();
+  double turn = 0;  ///< [rad], > 0
 };
 /// `tolerance`: largest distance from the ideal curve that still counts, same unit as the curve.
+/// Elliptic only if it turns by half a radian or more: shorter curves of any kind lie on ellipses.
 CurveShape recognise(const ParametricCurve& curve, double tolerance);
+
+/// The same for points in order along a curve (3 x N), as many as it takes to tell. `least_turn`:
+/// less than half a radian if it is known to be an ellipse [rad].
+CurveShape recognise(const Eigen::Matrix3Xd& points, double tolerance, double least_turn = 0.5);
 
 /// Parameters first = t0 < t1 < ... < last between which the cubic Hermite interpolant stays within
 /// `tolerance` of the curve. `breaks`: inner parameters where its derivative may jump, ascending.

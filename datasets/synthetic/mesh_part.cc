@@ -317,14 +317,15 @@ MeshPart make_mesh_part(const TriangleMesh& mesh, double crease_deg, const std::
   for (const Vector3d& p : mesh.points) box.extend(p);
   if (mesh.triangles.empty() || !(box.sizes().maxCoeff() > 0))
     throw InputError(name, "a mesh with faces", "none");
-  const Solid solid(mesh, {box.center(), 1 / box.sizes().maxCoeff()});
+  const UnitFrame frame{box.center(), 1 / box.sizes().maxCoeff(), box.sizes()};
+  const Solid solid(mesh, frame);
   if (solid.flat()) throw InputError(name, "faces with an area", "none");
   const std::map<VertexPair, Feature> features = solid.features(crease_deg);
   Drawer drawer(features, solid.points());
   // Facets of a coarse cylinder turn its rims too: what is smooth across is smooth along.
   for (const Run& run : chain(features, solid.points(), std::clamp(crease_deg, 30.0, 60.0)))
     drawer.add(run);
-  return {solid.surface(features), drawer.take()};
+  return {solid.surface(features), drawer.take(), frame};
 }
 
 }  // namespace sketchsplat

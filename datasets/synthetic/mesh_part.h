@@ -13,6 +13,7 @@ namespace sketchsplat {
 struct MeshPart {
   SurfaceMesh surface;  ///< normals smooth across gentle edges; faces: what feature edges enclose
   Truth truth;          ///< feature edges; points lie on the mesh's own edges
+  UnitFrame frame;
 };
 
 /// Feature edges are those whose triangles meet at more than `crease_deg` (1 to 180) [deg], that

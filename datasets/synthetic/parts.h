@@ -2,26 +2,16 @@
 #pragma once
 
 #include <cstdint>
-#include <iterator>
 #include <string>
-#include <vector>
 
 #include "datasets/synthetic/brep.h"
+#include "datasets/synthetic/part_table.h"
 
 namespace sketchsplat {
 
-/// Names of the built-in parts, in the order of the table. Here, so that nobody needs OpenCASCADE
-/// to know them.
-inline constexpr const char* kPartNames[] = {
-    "box",        "box-hole",    "plate-holes",   "stepped-shaft", "l-bracket", "pocket-block",
-    "box-fillet", "box-chamfer", "slotted-sheet", "cut-cylinder",  "frustum",   "hex-nut",
-    "dome-plate", "flange",      "tee",           "u-channel"};
-inline std::vector<std::string> part_names() {
-  return {std::begin(kPartNames), std::end(kPartNames)};
-}
-
 /// A built-in part; its dimensions are drawn from `seed` within ranges that keep its shape (same
-/// seed, same part). Throws InputError if there is no part of that name.
-Brep make_part(const std::string& name, std::uint64_t seed);
+/// seed, same part), except those that `values` sets. Throws InputError if there is no part of that
+/// name, or if it has no such dimension or not in that range.
+Brep make_part(const std::string& name, std::uint64_t seed, const PartValues& values = {});
 
 }  // namespace sketchsplat

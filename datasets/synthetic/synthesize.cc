@@ -51,14 +51,27 @@ bool is_step_file(const std::string& part) {
   return ending == ".step" || ending == ".stp";
 }
 
-MeshPart make_object(const SynthesizeOptions& options) {
-  if (is_mesh_file(options.part))
-    return make_mesh_part(read_mesh(options.part), options.crease_deg, options.part);
-  const Brep brep =
-      is_step_file(options.part) ? read_step(options.part) : make_part(options.part, options.seed);
+struct Object {
+  SurfaceMesh surface;
+  Truth truth;
+  std::shared_ptr<const CadModel> cad;
+};
+
+Object make_object(const SynthesizeOptions& options) {
+  if (is_mesh_file(options.part)) {
+    MeshPart part = make_mesh_part(read_mesh(options.part), options.crease_deg, options.part);
+    const CadModel cad{part.frame, {}, part.surface};
+    return {std::move(part.surface), std::move(part.truth), std::make_shared<CadModel>(cad)};
+  }
+  const Brep brep = is_step_file(options.part)
+                        ? read_step(options.part)
+                        : make_part(options.part, options.seed, options.parameters);
   const UnitFrame frame = unit_frame(brep, options.part);
-  return {tessellate(brep, frame, options.deflection),
-          sharp_edges(brep, frame, options.smooth_angle_deg)};
+  constexpr double kCoarse = 1e-3;  // about as fine as the meshes of ABC
+  const CadModel cad{frame, smooth_edges(brep, frame, options.smooth_angle_deg),
+                     tessellate(brep, frame, kCoarse, options.part)};
+  return {tessellate(brep, frame, options.deflection, options.part),
+          sharp_edges(brep, frame, options.smooth_angle_deg), std::make_shared<CadModel>(cad)};
 }
 
 Eigen::Matrix3Xd all_points(const Truth& truth) {
@@ -87,7 +100,7 @@ void scale(double factor, Image<float>* image) {
 
 SyntheticScene synthesize(const SynthesizeOptions& options) {
   check(options);
-  auto [surface, truth] = make_object(options);
+  auto [surface, truth, cad] = make_object(options);
   if (truth.curves.empty()) throw InputError(options.part, "a part with sharp edges", "none");
   const Tracer tracer(surface);
   const std::vector<View> unit_views = make_rig(options.rig, options.seed);
@@ -105,7 +118,8 @@ SyntheticScene synthesize(const SynthesizeOptions& options) {
           all_points(truth),
           tracer,
           options.render.clutter ? clutter_behind(unit_views, options.seed) : nullptr,
-          lift};
+          lift,
+          cad};
 }
 
 RenderedView render_view(const SyntheticScene& scene, int view) {

@@ -11,6 +11,7 @@
 #include "datasets/synthetic/clutter.h"
 #include "datasets/synthetic/degrade.h"
 #include "datasets/synthetic/outputs.h"
+#include "datasets/synthetic/part_table.h"
 #include "datasets/synthetic/render.h"
 #include "datasets/synthetic/rig.h"
 #include "datasets/synthetic/tracer.h"
@@ -22,6 +23,7 @@ namespace sketchsplat {
 struct SynthesizeOptions {
   std::string part = "box-hole";  ///< one of part_names(), or the path of a STEP or mesh file
   std::uint64_t seed = 1;         ///< of the part's dimensions, the cameras and the noise
+  PartValues parameters;          ///< of a built-in part, instead of what the seed gives
   double extent = 1.0;            ///< longest side of the object [world units], > 0
   double smooth_angle_deg = 1.0;  ///< faces that meet at less have no edge [deg], (0, 90)
   double crease_deg = 30.0;  ///< faces of a mesh that meet at more have an edge [deg], [1, 180]
@@ -30,6 +32,13 @@ struct SynthesizeOptions {
   RenderOptions render;
   DegradeOptions degrade;
   std::string outputs = "all";  ///< what is written beside the images: see parse_outputs
+};
+
+/// What else is known about a part, for truth in the units of the CAD file.
+struct CadModel {
+  UnitFrame frame;   ///< CAD units to the unit frame
+  Truth smooth;      ///< seams and tangent transitions, unit frame; empty for a mesh
+  SurfaceMesh mesh;  ///< coarser than what is rendered, unit frame
 };
 
 /// A part, its true edges and its cameras. The object's box is centred at (0.5, 0.5, 0.5) extents.
@@ -43,6 +52,7 @@ struct SyntheticScene {
   Tracer tracer;                           ///< the mesh, unit frame
   std::shared_ptr<const Clutter> clutter;  ///< what stands behind it; null if nothing
   double lift = 0;  ///< how far rays that leave the surface start above it, unit lengths
+  std::shared_ptr<const CadModel> cad;
 };
 
 /// Throws InputError if there is no such part or file, if it holds no sharp edge, or if an option
@@ -69,6 +79,7 @@ Picture render(const SyntheticScene& scene, int view);  ///< its picture alone
 ///   groundtruth/gt.json: list of {"type", "closed", "points": [[x, y, z], ...],
 ///     "visible_views": [n, ...] one per point, "dihedral_deg"},
 ///   groundtruth/sketch.json: the same edges as a sketch graph;
+///   groundtruth/abc/: the same edges as ABC ships them, in CAD units: see write_abc.h;
 /// and of the outputs that were asked for, whatever happens to the image:
 ///   mask/<k>.png, depth/<k>.exr (channel Z, 32 bits), normal/<k>.exr (R, G, B = x, y, z, 16 bits),
 ///   as RenderedView says, edges_visible/<k>.png and .json: as draw() and to_json() of the visible

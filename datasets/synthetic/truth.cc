@@ -111,8 +111,9 @@ class Collector {
  public:
   explicit Collector(const UnitFrame& frame) : frame_(frame) {}
 
-  void add_if_sharp(const TopoDS_Edge& edge, const std::vector<Side>& sides,
-                    double smooth_angle_deg) {
+  // Adds the edge if it is sharp, or if it is not: what is asked for.
+  void add(const TopoDS_Edge& edge, const std::vector<Side>& sides, double smooth_angle_deg,
+           bool sharp) {
     const BRepAdaptor_Curve adaptor(edge);
     const ParametricCurve curve = in_unit_frame(adaptor, frame_);
     const std::vector<double> breaks = derivative_breaks(adaptor);
@@ -121,7 +122,7 @@ class Collector {
     out.points = polyline(curve, breaks, kDeflection, kSpacing, &parameters);
     const TopoDS_Vertex first = TopExp::FirstVertex(edge), last = TopExp::LastVertex(edge);
     out.closed = first.IsNull() || first.IsSame(last);
-    if (look_around(sides, parameters, &out) < smooth_angle_deg) return;
+    if ((look_around(sides, parameters, &out) >= smooth_angle_deg) != sharp) return;
     add_strokes(adaptor, curve, breaks, first, last, &out);
     truth_.curves.push_back(std::move(out));
   }
@@ -152,19 +153,19 @@ class Collector {
     } else if (shape.kind == CurveShape::kCircular) {
       out->type = "Circle";
       if (out->closed) {
-        stroke(StrokeKind::kCircle, -1, -1, {shape.centre, shape.axis});
+        stroke(StrokeKind::kCircle, -1, -1,
+               {shape.centre, shape.u.cross(shape.v).normalized() * shape.u.norm()});
       } else {
         const Vector3d apex = curve.point((curve.first + curve.last) / 2);
         stroke(StrokeKind::kArc, node(first), node(last), {apex});
       }
-    } else if (adaptor.GetType() == GeomAbs_Ellipse && out->closed) {
+    } else if (shape.kind == CurveShape::kElliptic && out->closed) {
       out->type = "Ellipse";
-      const gp_Elips e = adaptor.Ellipse();
-      const Vector3d u = to_eigen(e.XAxis().Direction().XYZ()) * e.MajorRadius() * frame_.scale;
-      const Vector3d v = to_eigen(e.YAxis().Direction().XYZ()) * e.MinorRadius() * frame_.scale;
-      stroke(StrokeKind::kEllipse, -1, -1, {frame_ * to_eigen(e.Location().XYZ()), u, v});
+      stroke(StrokeKind::kEllipse, -1, -1, {shape.centre, shape.u, shape.v});
     } else {
-      out->type = adaptor.GetType() == GeomAbs_Ellipse ? "Ellipse" : "BSpline";
+      // There is no stroke for an arc of an ellipse.
+      const bool arc = shape.kind == CurveShape::kElliptic || adaptor.GetType() == GeomAbs_Ellipse;
+      out->type = arc ? "Ellipse" : "BSpline";
       add_cubics(curve, breaks, first, last);
     }
   }
@@ -192,9 +193,7 @@ class Collector {
   std::vector<int> node_of_vertex_;
 };
 
-}  // namespace
-
-Truth sharp_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg) {
+Truth collect(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg, bool sharp) {
   TopTools_IndexedDataMapOfShapeListOfShape faces_of_edge;
   TopExp::MapShapesAndUniqueAncestors(*brep.shape, TopAbs_EDGE, TopAbs_FACE, faces_of_edge);
   Collector collector(frame);
@@ -202,9 +201,19 @@ Truth sharp_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_
     const TopoDS_Edge edge = TopoDS::Edge(faces_of_edge.FindKey(i));
     const std::vector<Side> sides = sides_of(edge, faces_of_edge(i));
     if (sides.empty() || BRep_Tool::Degenerated(edge)) continue;
-    collector.add_if_sharp(edge, sides, smooth_angle_deg);
+    collector.add(edge, sides, smooth_angle_deg, sharp);
   }
   return collector.take();
+}
+
+}  // namespace
+
+Truth sharp_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg) {
+  return collect(brep, frame, smooth_angle_deg, true);
+}
+
+Truth smooth_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg) {
+  return collect(brep, frame, smooth_angle_deg, false);
 }
 
 Truth transformed(const Truth& truth, double scale, const Vector3d& shift) {

@@ -12,6 +12,7 @@
 #include "datasets/synthetic/degrade.h"
 #include "datasets/synthetic/synthesize.h"
 #include "datasets/synthetic/visibility.h"
+#include "datasets/synthetic/write_abc.h"
 #include "sketches/io.h"
 
 namespace sketchsplat {
@@ -113,9 +114,13 @@ void write_outputs(const SyntheticScene& scene, int k, const RenderedView& view,
 }
 
 void make_folders(const std::string& folder, const Outputs& outputs) {
-  const std::pair<const char*, bool> wanted[] = {
-      {"/color", true},          {"/groundtruth", true},      {"/mask", outputs.mask},
-      {"/depth", outputs.depth}, {"/normal", outputs.normal}, {"/edges_visible", outputs.edges}};
+  const std::pair<const char*, bool> wanted[] = {{"/color", true},
+                                                 {"/groundtruth/abc/feat", true},
+                                                 {"/groundtruth/abc/obj", true},
+                                                 {"/mask", outputs.mask},
+                                                 {"/depth", outputs.depth},
+                                                 {"/normal", outputs.normal},
+                                                 {"/edges_visible", outputs.edges}};
   for (const auto& [name, is_wanted] : wanted) {
     std::error_code error;
     if (is_wanted) fs::create_directories(folder + name, error);
@@ -147,6 +152,8 @@ void write_scene(const SyntheticScene& scene, const std::string& folder) {
   std::ostringstream sketch;
   write_sketch_json(sketch, scene.truth.sketch);
   write_text(folder + "/groundtruth/sketch.json", sketch.str());
+  for (const auto& [name, text] : abc_files(scene))
+    write_text(folder + "/groundtruth/abc/" + name, text);
   write_text(folder + "/meta_data.json", meta_data(scene).dump(1));
 }
 

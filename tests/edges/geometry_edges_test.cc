@@ -78,8 +78,8 @@ TEST(GeometryEdges, FindsACreaseWherePlanesMeet) {
   const auto inverse = [&](const Plane& plane, const Vector2d& p) {
     return plane.normal.normalized().dot(camera().ray(p)) / plane.offset;
   };
-  const GeometryMaps maps = maps_of(
-      {a, b}, [&](const Vector2d& p) { return inverse(a, p) > inverse(b, p) ? 0 : 1; });
+  const GeometryMaps maps =
+      maps_of({a, b}, [&](const Vector2d& p) { return inverse(a, p) > inverse(b, p) ? 0 : 1; });
   // 1 / depth is affine in the pixel, so the planes meet in a line.
   const auto difference = [&](double x, double y) {
     return inverse(a, {x, y}) - inverse(b, {x, y});
@@ -95,8 +95,7 @@ TEST(GeometryEdges, FindsACreaseWherePlanesMeet) {
 
 TEST(GeometryEdges, ASlantedPlaneIsNoStepHoweverSteep) {
   for (double slope : {0.5, 2.0, 5.0}) {
-    const GeometryMaps maps =
-        maps_of({{{slope, 0, -1}, -2}}, [](const Vector2d&) { return 0; });
+    const GeometryMaps maps = maps_of({{{slope, 0, -1}, -2}}, [](const Vector2d&) { return 0; });
     EXPECT_TRUE(geometry_edges(maps, camera(), {}).edgels.empty()) << slope;
   }
 }
@@ -155,8 +154,7 @@ TEST(GeometryEdges, NoiseOfNormalsAndDepthGivesNextToNothingAndIsMeasured) {
 
 TEST(GeometryEdges, EmptyMapsAndMapsOfNothingGiveNoEdges) {
   EXPECT_TRUE(geometry_edges({}, camera(), {}).edgels.empty());
-  const GeometryMaps nothing =
-      maps_of({}, [](const Vector2d&) { return -1; });
+  const GeometryMaps nothing = maps_of({}, [](const Vector2d&) { return -1; });
   const EdgelMap map = geometry_edges(nothing, camera(), {});
   EXPECT_TRUE(map.edgels.empty());
   EXPECT_EQ(map.num_chains(), 0);

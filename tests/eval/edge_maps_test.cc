@@ -40,7 +40,8 @@ TEST(EdgePolylines, AreReadAndRefusedInOneLine) {
   const auto lines = read_edge_polylines(folder.path("a.json"));
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0](1, 1), 4.5);
-  for (const char* text : {R"({})", R"({"polylines": [[[1, 2]]]})", R"({"polylines": [[[1], [2]]]})"}) {
+  for (const char* text :
+       {R"({})", R"({"polylines": [[[1, 2]]]})", R"({"polylines": [[[1], [2]]]})"}) {
     std::ofstream(folder.path("b.json")) << text;
     EXPECT_THROW(read_edge_polylines(folder.path("b.json")), InputError) << text;
   }

@@ -57,8 +57,7 @@ TEST(GeometryDetector, TakesNormalMapsOfEstimatorsInstead) {
   write_png(folder + "/" + view.name, painted);
   const GeometryMaps theirs = read_geometry_maps(part.scene, view, folder);
   for (size_t i = 0; i < own.depth.data.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      ASSERT_NEAR(theirs.normal[c].data[i], own.normal[c].data[i], 0.02);
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(theirs.normal[c].data[i], own.normal[c].data[i], 0.02);
 }
 
 TEST(GeometryDetector, SaysWhatIsMissing) {

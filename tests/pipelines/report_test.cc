@@ -162,7 +162,7 @@ TEST(Overlay, PictureIsPaledAndItsAlphaBecomesWhite) {
   picture.red = picture.green = picture.blue = Image<float>(200, 100, 0.0f);
   picture.alpha = Image<float>(200, 100, 1.0f);
   picture.alpha.at(5, 5) = 0;
-  const Picture overlay = draw_overlay({}, view_from(2), picture);
+  const Picture overlay = draw_overlay(Sketch(), view_from(2), picture);
   EXPECT_NEAR(overlay.red.at(0, 0), 0.45, 0.01);
   EXPECT_NEAR(overlay.red.at(5, 5), 1, 0.01);
 }

@@ -218,5 +218,57 @@ TEST(SegmentChain, WhateverComesInWhatComesOutIsFinite) {
   for (int i = 0; i < s.handles.size(); ++i) EXPECT_TRUE(std::isfinite(s.handles.data()[i]));
 }
 
+TEST(SegmentChain, ASlotIsTwoLinesAndTwoArcsWhereverTheRunBegins) {
+  const double r = 0.1, half = 0.2;
+  const double round = M_PI * r, straight = 2 * half, around = 2 * (round + straight);
+  const auto slot = [&](double s) {
+    s = std::fmod(s, around);
+    const double side = s < around / 2 ? 1 : -1;
+    s = std::fmod(s, around / 2);
+    if (s < straight) return Vector3d(side * (half - s), side * r, 0);
+    const double a = (s - straight) / r;
+    return Vector3d(side * (-half - r * std::sin(a)), side * r * std::cos(a), 0);
+  };
+  for (double start : {0.0, 0.1, 0.45, 0.6}) {
+    Points run;
+    run.add_curve(slot, start, start + 0.985 * around, 70);
+    const Sketch s = run.segmented(true);
+    EXPECT_EQ(count_of(s, StrokeKind::kArc), 2) << start;
+    EXPECT_EQ(count_of(s, StrokeKind::kLine), 2) << start;
+  }
+}
+
+TEST(CutRun, AHigherPriceNeverBuysMoreCurves) {
+  Points run;
+  run.add_curve([](double t) { return Vector3d(t, 0.15 * std::sin(7 * t), 0.1 * t * t); }, 0, 1,
+                60);
+  size_t before = 1000;
+  for (double price : {0.5, 2.0, 8.0, 50.0, 1e4}) {
+    SegmentOptions options;
+    options.price = price;
+    const auto pieces =
+        cut_run(run.points, run.tangents, false, 0.15 * kUnit, kUnit, options);
+    EXPECT_LE(pieces.size(), before) << price;
+    before = pieces.size();
+  }
+  EXPECT_EQ(before, 1u);
+}
+
+TEST(CutRun, PiecesFollowOneAnotherAndCoverTheRun) {
+  Points run;
+  run.add_curve([](double t) { return Vector3d(t, 0, 0); }, 0, 0.5, 30);
+  run.add_curve(
+      [](double t) {
+        return Vector3d(0.5 + 0.2 * std::sin(t), 0.2 - 0.2 * std::cos(t), 0);
+      },
+      0.1, 2, 20);
+  const auto pieces = cut_run(run.points, run.tangents, false, 0.15 * kUnit, kUnit, {});
+  ASSERT_EQ(pieces.size(), 2u);
+  EXPECT_EQ(pieces[0].first, 0);
+  EXPECT_EQ(pieces[1].first, pieces[0].last - 1);
+  EXPECT_EQ(pieces[1].last, run.size());
+  EXPECT_NEAR(pieces[1].first, 30, 4);
+}
+
 }  // namespace
 }  // namespace sketchsplat

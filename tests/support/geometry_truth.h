@@ -36,16 +36,16 @@ inline GeometryMaps exact_maps(const SyntheticScene& scene, int k) {
 }
 
 struct Degradation {
-  double blur_px = 1.25;      ///< of everything, alpha-weighted: what a splat's width does
-  double normal_deg = 4.5;    ///< of each component, over `patch_px`
-  double patch_px = 4.0;      ///< correlation of the noise of normals
-  double depth_px = 0.5;      ///< white, pixel footprints
+  double blur_px = 1.25;    ///< of everything, alpha-weighted: what a splat's width does
+  double normal_deg = 4.5;  ///< of each component, over `patch_px`
+  double patch_px = 4.0;    ///< correlation of the noise of normals
+  double depth_px = 0.5;    ///< white, pixel footprints
 };
 
 /// The same maps as a splat renderer that is not quite sure would give them: values are means
 /// weighed by alpha, normals are noisy over patches, depth by pixel. Depends on the seed alone.
-inline GeometryMaps degraded(const GeometryMaps& exact, const Camera& camera,
-                             const Degradation& d, std::uint64_t seed) {
+inline GeometryMaps degraded(const GeometryMaps& exact, const Camera& camera, const Degradation& d,
+                             std::uint64_t seed) {
   const int w = exact.width(), h = exact.height();
   const auto mat = [&](const Image<float>& image) {
     return cv::Mat1f(h, w, const_cast<float*>(image.data.data())).clone();
@@ -62,7 +62,8 @@ inline GeometryMaps degraded(const GeometryMaps& exact, const Camera& camera,
   cv::Mat1f white(h, w);
   rng.fill(white, cv::RNG::NORMAL, 0, d.depth_px / camera.fx);
   z = z.mul(1 + white);
-  for (int i = 0; i < w * h; ++i) out.depth.data[i] = wide(i / w, i % w) > 0.01f ? z(i / w, i % w) : 0;
+  for (int i = 0; i < w * h; ++i)
+    out.depth.data[i] = wide(i / w, i % w) > 0.01f ? z(i / w, i % w) : 0;
   cv::Mat1f n[3], length(h, w, 0.f);
   for (int c = 0; c < 3; ++c) {
     n[c] = blur(mat(exact.normal[c]), d.blur_px) / cv::max(wide, 1e-6f);

@@ -146,9 +146,44 @@ TEST(CurveKind, CirclesAreRecognisedHoweverTheyAreStored) {
   const CurveShape arc = recognise(turning(0.3, 1.0, 0), 1e-6);
   ASSERT_EQ(arc.kind, CurveShape::kCircular);
   EXPECT_LT(arc.centre.norm(), 1e-12);
-  EXPECT_NEAR(arc.axis.z(), 0.3, 1e-12);
+  EXPECT_NEAR(arc.u.cross(arc.v).z(), 0.09, 1e-12);
   EXPECT_NEAR(arc.turn, 1.0, 1e-12);
   EXPECT_NEAR(recognise(turning(0.3, 2 * M_PI, 0), 1e-6).turn, 2 * M_PI, 1e-9);
+}
+
+ParametricCurve elliptic(double angle, double rise) {
+  ParametricCurve curve;
+  curve.last = angle;
+  curve.evaluate = [=](double t, Vector3d* p, Vector3d* d) {
+    *p = {1 + 0.4 * std::cos(t), 0.1 * std::sin(t), 2 + rise * t};
+    *d = {-0.4 * std::sin(t), 0.1 * std::cos(t), rise};
+  };
+  return curve;
+}
+
+TEST(CurveKind, EllipsesAndTheirArcsAreRecognisedHoweverTheyAreStored) {
+  for (double angle : {0.8, 3.0, 2 * M_PI}) {
+    const CurveShape shape = recognise(elliptic(angle, 0), 1e-6);
+    ASSERT_EQ(shape.kind, CurveShape::kElliptic) << angle;
+    EXPECT_LT((shape.centre - Vector3d(1, 0, 2)).norm(), 1e-8) << angle;
+    EXPECT_NEAR(shape.u.norm(), 0.4, 1e-8) << angle;
+    EXPECT_NEAR(shape.v.norm(), 0.1, 1e-8) << angle;
+    EXPECT_NEAR(shape.turn, angle, 1e-6) << angle;
+  }
+  EXPECT_EQ(recognise(elliptic(3.0, 1e-4), 1e-6).kind, CurveShape::kOther);
+  EXPECT_EQ(recognise(elliptic(0.3, 0), 1e-7).kind, CurveShape::kOther) << "too short to tell";
+}
+
+TEST(CurveKind, ParabolasAndWavesAreNoEllipses) {
+  ParametricCurve curve;
+  curve.last = 1;
+  for (bool wave : {false, true}) {
+    curve.evaluate = [=](double t, Vector3d* p, Vector3d* d) {
+      *p = {t, wave ? 0.1 * std::sin(7 * t) : t * t, 0};
+      *d = {1, wave ? 0.7 * std::cos(7 * t) : 2 * t, 0};
+    };
+    EXPECT_EQ(recognise(curve, 1e-6).kind, CurveShape::kOther) << wave;
+  }
 }
 
 TEST(CurveKind, HelixIsNoCircleAndARunOnTheSpotIsNoLine) {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/bench/suite.h"
+
+namespace sketchsplat {
+
+std::vector<BenchVariant> preset_variants(const std::vector<std::string>& presets,
+                                          const std::vector<std::string>& detectors) {
+  std::vector<BenchVariant> variants;
+  for (const std::string& preset : presets)
+    for (const std::string& detector : detectors)
+      variants.push_back({preset + (detectors.size() > 1 ? ", " + detector : ""),
+                          {{"preset", preset}, {"detector", detector}}});
+  return variants;
+}
+
+std::vector<BenchVariant> ablation_variants() {
+  const std::pair<std::string, std::string> no_rounds = {"rounds", "0"}, no_steps = {"steps", "0"},
+                                            no_topology = {"simplify", "false"},
+                                            no_visibility = {"visibility", "false"},
+                                            no_early = {"early-polish", "false"},
+                                            no_final = {"final-polish", "false"};
+  return {
+      {"lift and fit only", {no_early, no_final, no_rounds}},
+      {"+ raster rounds", {no_early, no_final, no_topology, no_visibility}},
+      {"+ topology", {no_early, no_final, no_visibility}},
+      {"+ visibility", {no_early, no_final}},
+      {"+ final polish", {no_early}},
+      {"+ polish in fit and rounds = all", {}},
+      {"all but rounds", {no_rounds}},
+      {"all but raster steps", {no_steps}},
+      {"all but topology", {no_topology}},
+      {"all but visibility", {no_visibility}},
+      {"all but final polish", {no_final}},
+  };
+}
+
+}  // namespace sketchsplat

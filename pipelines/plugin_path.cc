@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/plugin_path.h"
+
+#include <filesystem>
+
+namespace sketchsplat {
+
+std::string plugin_path(const std::string& file, const std::string& built) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
+  for (const fs::path& folder : {bin, bin / ".." / "lib" / "sketchsplat"})
+    if (fs::exists(folder / file, none)) return folder / file;
+  return fs::path(built) / file;
+}
+
+}  // namespace sketchsplat

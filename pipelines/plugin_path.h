@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace sketchsplat {
+
+/// Where a plug-in lies: beside the executable, where it is installed, or in the folder where it
+/// was built. If it is nowhere: the last of these.
+std::string plugin_path(const std::string& file, const std::string& built);
+
+}  // namespace sketchsplat

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/rechain.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "pipelines/observe.h"
+#include "sketches/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr int kFewestViews = 3;   // that place a sample
+constexpr double kReachPx = 1.5;  // of an edgel from the stroke
+constexpr double kGain = 1;       // [nat] below which nothing changes
+
+// One stroke of a chain, and whether the chain runs through it backwards.
+struct Link {
+  int stroke = -1;
+  bool backward = false;
+};
+struct Chain {
+  std::vector<Link> links;
+  bool closed = false;
+};
+
+// An end of a stroke: where it is and which way it leaves the stroke.
+struct End {
+  Vector3d point, outward;
+  int node = -1;
+  bool open = false;  // may be continued
+};
+
+// Ends 2 s and 2 s + 1 are the begin and the end of stroke s.
+std::vector<End> ends_of(const Sketch& sketch) {
+  std::vector<int> degree(sketch.nodes.cols());
+  for (const Stroke& s : sketch.strokes)
+    if (!is_closed(s.kind)) ++degree[s.begin], ++degree[s.end];
+  std::vector<End> ends(2 * sketch.size());
+  for (int s = 0; s < sketch.size(); ++s) {
+    const Stroke& stroke = sketch.strokes[s];
+    if (is_closed(stroke.kind) || stroke.begin == stroke.end) continue;
+    for (int k = 0; k < 2; ++k) {
+      End& e = ends[2 * s + k];
+      Vector3d d;
+      evaluate_stroke(sketch, s, k, &e.point, &d);
+      e.outward = (k == 0 ? -1 : 1) * d.normalized();
+      e.node = k == 0 ? stroke.begin : stroke.end;
+      e.open = degree[e.node] <= 2 && e.outward.allFinite();
+    }
+  }
+  return ends;
+}
+
+// How well two ends continue one another: their distance, or infinity.
+double continuation(const End& x, const End& y, const std::vector<int>& degree, double gap,
+                    double cosine) {
+  if (!x.open || !y.open) return INFINITY;
+  if (x.node != y.node && (degree[x.node] > 1 || degree[y.node] > 1)) return INFINITY;
+  const Vector3d step = y.point - x.point;
+  const double distance = step.norm();
+  if (distance > gap || x.outward.dot(-y.outward) < cosine) return INFINITY;
+  const double aside = (step - step.dot(x.outward) * x.outward).norm();
+  return aside <= 0.25 * gap + 0.2 * distance ? distance : INFINITY;
+}
+
+// The end that continues each end; -1 if none does, or if the choice is not mutual.
+std::vector<int> partners(const Sketch& sketch, const std::vector<End>& ends, double gap,
+                          double cosine) {
+  std::vector<int> degree(sketch.nodes.cols());
+  for (const Stroke& s : sketch.strokes)
+    if (!is_closed(s.kind)) ++degree[s.begin], ++degree[s.end];
+  const int n = int(ends.size());
+  std::vector<int> best(n, -1);
+  for (int i = 0; i < n; ++i) {
+    double least = INFINITY;
+    for (int j = 0; j < n; ++j) {
+      if (j / 2 == i / 2) continue;
+      const double d = continuation(ends[i], ends[j], degree, gap, cosine);
+      if (d < least) least = d, best[i] = j;
+    }
+  }
+  std::vector<int> mutual(n, -1);
+  for (int i = 0; i < n; ++i)
+    if (best[i] >= 0 && best[best[i]] == i) mutual[i] = best[i];
+  return mutual;
+}
+
+std::vector<Chain> chains_of(const Sketch& sketch, const std::vector<int>& partner) {
+  std::vector<Chain> chains;
+  std::vector<char> used(sketch.size());
+  const auto walk = [&](int start, Chain* chain) {  // `start`: the end that the chain begins with
+    int in = start;
+    while (true) {
+      used[in / 2] = 1;
+      chain->links.push_back({in / 2, in % 2 == 1});
+      const int next = partner[in ^ 1];
+      if (next < 0) return;
+      if (used[next / 2]) {
+        chain->closed = next == start;
+        return;
+      }
+      in = next;
+    }
+  };
+  for (bool loops : {false, true})
+    for (int s = 0; s < sketch.size(); ++s) {
+      if (used[s] || is_closed(sketch.strokes[s].kind)) continue;
+      if (!loops && partner[2 * s] >= 0 && partner[2 * s + 1] >= 0) continue;
+      chains.emplace_back();
+      walk(loops || partner[2 * s] < 0 ? 2 * s : 2 * s + 1, &chains.back());
+    }
+  return chains;
+}
+
+// Where the edgels of all views put the samples of a stroke, in the order of the samples.
+struct Measured {
+  std::vector<Vector3d> point, tangent;
+  std::vector<double> distance;  // from the stroke
+};
+Measured measure(const Observation& o, const Link& link, double footprint) {
+  Measured out;
+  const int first = o.layout.first[link.stroke], last = o.layout.first[link.stroke + 1];
+  for (int k = first; k < last; ++k) {
+    const int i = link.backward ? last - 1 - (k - first) : k;
+    if (o.matches.views_of(i) < kFewestViews) continue;
+    const Vector3d t = o.samples.tangent.col(i);
+    Vector3d move = -o.matches.information[i].ldlt().solve(o.matches.slope.col(i));
+    move -= move.dot(t) * t;
+    if (!move.allFinite() || move.norm() > kReachPx * footprint) continue;
+    out.point.push_back(o.samples.position.col(i) + move);
+    out.tangent.push_back(t);
+    out.distance.push_back(move.norm());
+  }
+  return out;
+}
+
+// A chain as one run of points, and the length of its present description.
+struct ChainRun {
+  Matrix3Xd point, tangent;
+  double cost = 0;
+};
+ChainRun run_of(const Sketch& sketch, const Observation& o, const Chain& chain, double sigma,
+                double footprint, const SegmentOptions& options) {
+  ChainRun run;
+  std::vector<Vector3d> points, tangents;
+  for (const Link& link : chain.links) {
+    const Measured m = measure(o, link, footprint);
+    points.insert(points.end(), m.point.begin(), m.point.end());
+    tangents.insert(tangents.end(), m.tangent.begin(), m.tangent.end());
+    run.cost += description_length(
+        Eigen::Map<const Eigen::VectorXd>(m.distance.data(), m.distance.size()), sigma,
+        sketch.strokes[link.stroke].kind, options);
+  }
+  run.point.resize(3, points.size());
+  run.tangent.resize(3, points.size());
+  for (size_t i = 0; i < points.size(); ++i)
+    run.point.col(i) = points[i], run.tangent.col(i) = tangents[i];
+  return run;
+}
+
+// The pieces that say the same in fewer words; empty if there are none.
+std::vector<RunPiece> shorter(const Sketch& sketch, const Observation& o, const Chain& chain,
+                              double sigma, double footprint, const SegmentOptions& options) {
+  const bool plain = chain.links.size() == 1 &&
+                     sketch.strokes[chain.links[0].stroke].kind == StrokeKind::kLine;
+  if (plain) return {};
+  const ChainRun run = run_of(sketch, o, chain, sigma, footprint, options);
+  if (run.point.cols() < 2 * options.min_points) return {};
+  std::vector<RunPiece> pieces =
+      cut_run(run.point, run.tangent, chain.closed, sigma, footprint, options);
+  double cost = 0;
+  for (const RunPiece& piece : pieces) {
+    if (!piece.fit.ok()) return {};
+    cost += piece.cost;
+  }
+  if (pieces.empty() || !(cost < run.cost - kGain)) return {};
+  return pieces;
+}
+
+// Copies strokes with their nodes into a new sketch.
+class Rebuilder {
+ public:
+  explicit Rebuilder(const Sketch& from) : from_(from), node_(from.nodes.cols(), -1) {}
+
+  int node(int old) {
+    if (node_[old] < 0) node_[old] = out.add_node(from_.nodes.col(old));
+    return node_[old];
+  }
+  void copy(int s) {
+    const Stroke& stroke = from_.strokes[s];
+    std::vector<Vector3d> handles;
+    for (int h = 0; h < num_handles(stroke.kind); ++h)
+      handles.push_back(from_.handles.col(stroke.handle + h));
+    const bool closed = is_closed(stroke.kind);
+    const int b = closed ? -1 : node(stroke.begin), e = closed ? -1 : node(stroke.end);
+    out.add_stroke(stroke.kind, b, e, handles, from_.evidence[s]);
+  }
+  void describe(const Chain& chain, const std::vector<RunPiece>& pieces) {
+    const int n = int(pieces.size());
+    if (n == 1 && is_closed(pieces[0].fit.kind)) {
+      out.add_stroke(pieces[0].fit.kind, -1, -1, pieces[0].fit.handles);
+      return;
+    }
+    std::vector<int> joint(n + 1);
+    const Link &head = chain.links.front(), &tail = chain.links.back();
+    const Stroke &a = from_.strokes[head.stroke], &z = from_.strokes[tail.stroke];
+    if (!chain.closed) {
+      joint[0] = node(head.backward ? a.end : a.begin);
+      joint[n] = node(tail.backward ? z.begin : z.end);
+    }
+    for (int k = chain.closed ? 0 : 1; k < n; ++k)
+      joint[k] = out.add_node(0.5 * (pieces[(k + n - 1) % n].fit.end + pieces[k].fit.begin));
+    if (chain.closed) joint[n] = joint[0];
+    for (int k = 0; k < n; ++k)
+      out.add_stroke(pieces[k].fit.kind, joint[k], joint[k + 1], pieces[k].fit.handles);
+  }
+  Sketch out;
+
+ private:
+  const Sketch& from_;
+  std::vector<int> node_;
+};
+
+}  // namespace
+
+Rechained rechain(const Sketch& sketch, const EdgeWorld& world, const SegmentOptions& segment,
+                  const RechainOptions& options) {
+  MatchOptions match;
+  match.reach_px = kReachPx;
+  const Observation o = observe(sketch, world, match, 2.0, 1);
+  const double sigma = std::max(options.sigma_px, 0.5 * o.matches.sigma_px) * world.footprint;
+  const std::vector<End> ends = ends_of(sketch);
+  const std::vector<Chain> chains =
+      chains_of(sketch, partners(sketch, ends, options.gap_px * world.footprint,
+                                 std::cos(options.turn_deg * M_PI / 180)));
+  std::vector<std::vector<RunPiece>> pieces(chains.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (size_t c = 0; c < chains.size(); ++c)
+    pieces[c] = shorter(sketch, o, chains[c], sigma, world.footprint, segment);
+  Rechained result;
+  Rebuilder rebuild(sketch);
+  for (int s = 0; s < sketch.size(); ++s)
+    if (is_closed(sketch.strokes[s].kind)) rebuild.copy(s);
+  for (size_t c = 0; c < chains.size(); ++c) {
+    if (pieces[c].empty()) {
+      for (const Link& link : chains[c].links) rebuild.copy(link.stroke);
+      continue;
+    }
+    rebuild.describe(chains[c], pieces[c]);
+    ++result.changes;
+  }
+  result.sketch = rebuild.out;
+  return result;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/close_graph.h"
+
+#include <gtest/gtest.h>
+
+#include "sketches/conic.h"
+#include "tests/support/strokes.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using Eigen::Vector3d;
+const Vector3d kMiddle(0.5, 0.5, 0.5);
+
+// A world whose images show `truth`; without masks.
+EdgeWorld world_of(const Sketch& truth) {
+  return ideal_world(ring_of_views(12, kMiddle, 3), polylines_of(truth));
+}
+
+Sketch frame() {
+  Sketch s;
+  add_line(&s, {0.2, 0.2, 0.5}, {0.8, 0.2, 0.5});
+  return s;
+}
+
+class CloseGraph : public testing::Test {
+ protected:
+  CloseGraph() : world(world_of(frame())), px(world.footprint) {}
+  Closed close(const Sketch& s) const { return close_graph(s, world, {}); }
+  const EdgeWorld world;
+  const double px;
+};
+
+TEST_F(CloseGraph, TwoLooseEndsThatPointAtACornerShareIt) {
+  Sketch s;
+  add_line(&s, {0.2, 0.2, 0.5}, {0.8 - 5 * px, 0.2, 0.5});
+  add_line(&s, {0.8, 0.2 + 4 * px, 0.5}, {0.8, 0.8, 0.5});
+  const Closed c = close(s);
+  ASSERT_EQ(c.sketch.size(), 2);
+  EXPECT_TRUE(validate(c.sketch).empty());
+  ASSERT_EQ(c.sketch.nodes.cols(), 3);
+  EXPECT_EQ(c.sketch.strokes[0].end, c.sketch.strokes[1].begin);
+  EXPECT_LT((point_at(c.sketch, 0, 1) - Vector3d(0.8, 0.2, 0.5)).norm(), px);
+}
+
+TEST_F(CloseGraph, AnEndOnAnothersInteriorSplitsItThere) {
+  Sketch s = frame();
+  add_line(&s, {0.5, 0.2 + 3 * px, 0.5}, {0.5, 0.8, 0.5});
+  const Closed c = close(s);
+  EXPECT_EQ(c.split, 1);
+  ASSERT_EQ(c.sketch.size(), 3);
+  EXPECT_TRUE(validate(c.sketch).empty());
+  EXPECT_EQ(c.sketch.nodes.cols(), 4);
+  double total = 0;
+  for (int i = 0; i < 3; ++i) total += stroke_length(c.sketch, i);
+  EXPECT_NEAR(total, 0.6 + 0.6, px);
+}
+
+TEST_F(CloseGraph, AnEndThatWentTooFarComesBack) {
+  Sketch s = frame();
+  add_line(&s, {0.8, 0.2 - 2 * px, 0.5}, {0.8, 0.8, 0.5});
+  const Closed c = close(s);
+  ASSERT_EQ(c.sketch.size(), 2);
+  EXPECT_EQ(c.sketch.nodes.cols(), 3);
+  EXPECT_NEAR(stroke_length(c.sketch, 1), 0.6, 0.5 * px);
+}
+
+TEST_F(CloseGraph, StrokesThatPassEachOtherStayApart) {
+  Sketch s = frame();
+  add_line(&s, {0.5, 0.2 + 3 * px, 0.5 + 4 * px}, {0.5, 0.8, 0.5 + 4 * px});  // above
+  add_line(&s, {0.3, 0.2 + 20 * px, 0.5}, {0.3, 0.8, 0.5});                   // too far
+  add_line(&s, {0.1, 0.2 + 3 * px, 0.5}, {0.2 - 3 * px, 0.2 + 3 * px, 0.5});  // beside
+  const Closed c = close(s);
+  EXPECT_EQ(c.joined, 0);
+  EXPECT_EQ(c.sketch.size(), 4);
+  EXPECT_EQ(c.sketch.nodes.cols(), 8);
+}
+
+TEST_F(CloseGraph, AnArcThatGoesOnKeepsItsCircle) {
+  Sketch s = frame();
+  const double r = 0.2;
+  const auto on = [&](double deg) {
+    const double a = deg * M_PI / 180;
+    return Vector3d(0.5 + r * std::cos(a), 0.2 + r * std::sin(a), 0.5);
+  };
+  const double short_of = 3 * px / r * 180 / M_PI;
+  add_arc(&s, on(short_of), on(90), on(180 - short_of));
+  const Closed c = close(s);
+  EXPECT_EQ(c.joined, 2);
+  ASSERT_EQ(c.sketch.size(), 4);  // the line in three, and the arc
+  for (int i = 0; i < c.sketch.size(); ++i) {
+    if (c.sketch.strokes[i].kind != StrokeKind::kArc) continue;
+    const CircleParameters p = circle_parameters(c.sketch, i);
+    EXPECT_NEAR(p.radius, r, 0.2 * px);
+    EXPECT_LT((p.centre - Vector3d(0.5, 0.2, 0.5)).norm(), 0.2 * px);
+  }
+}
+
+TEST_F(CloseGraph, AnArcOfNearlyACircleIsTheCircleUnlessSomethingEndsThere) {
+  Sketch s;
+  const auto on = [](double deg) {
+    const double a = deg * M_PI / 180;
+    return Vector3d(0.5 + 0.2 * std::cos(a), 0.5 + 0.2 * std::sin(a), 0.5);
+  };
+  const double gap = 6 * px / 0.2 * 180 / M_PI;
+  add_arc(&s, on(gap / 2), on(180), on(360 - gap / 2));
+  const Closed c = close(s);
+  ASSERT_EQ(c.sketch.size(), 1);
+  ASSERT_EQ(c.sketch.strokes[0].kind, StrokeKind::kCircle);
+  EXPECT_NEAR(c.sketch.handles.col(1).norm(), 0.2, 0.1 * px);
+
+  const int outside = s.add_node({0.9, 0.5, 0.5});
+  s.add_stroke(StrokeKind::kLine, s.strokes[0].begin, outside, {});
+  EXPECT_EQ(close(s).rounded, 0);
+}
+
+TEST_F(CloseGraph, WithoutMasksWideGapsStayOpen) {
+  Sketch s;
+  add_line(&s, {0.2, 0.2, 0.5}, {0.4, 0.2, 0.5});
+  add_line(&s, {0.6, 0.2, 0.5}, {0.8, 0.2, 0.5});
+  EXPECT_EQ(close(s).bridged, 0);
+  Sketch near;
+  add_line(&near, {0.2, 0.2, 0.5}, {0.5, 0.2, 0.5});
+  add_line(&near, {0.5 + 6 * px, 0.2, 0.5}, {0.8, 0.2, 0.5});
+  const Closed c = close(near);
+  EXPECT_EQ(c.bridged, 1);
+  ASSERT_EQ(c.sketch.size(), 1);
+  EXPECT_NEAR(stroke_length(c.sketch, 0), 0.6, 1e-9);
+  EXPECT_EQ(close(c.sketch).bridged, 0);
+}
+
+TEST_F(CloseGraph, PiecesOfTwoLinesAreNotOne) {
+  Sketch s;
+  add_line(&s, {0.2, 0.2, 0.5}, {0.5, 0.2, 0.5});
+  add_line(&s, {0.5 + 6 * px, 0.2 + 3 * px, 0.5}, {0.8, 0.2 + 3 * px, 0.5});
+  EXPECT_EQ(close(s).bridged, 0);
+}
+
+TEST_F(CloseGraph, NothingMakesNothing) { EXPECT_EQ(close(Sketch()).sketch.size(), 0); }
+
+}  // namespace
+}  // namespace sketchsplat
