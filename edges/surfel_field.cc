@@ -86,12 +86,13 @@ class Trainer {
 
   SurfelField run() {
     field_.drawing.kernel = options_.kernel;
+    field_.drawing.lowpass_px = options_.lowpass_px;
     seed();
     if (field_.surfels.size() == 0) return field_;
     const int total = std::max(1, options_.renderings / options_.batch);
     const double share[3] = {0.3, 0.35, 0.35};
     for (int level = 0; level < 3; ++level) {
-      targets_ = make_targets(views_, std::max(16, options_.side_px >> (2 - level)),
+      targets_ = make_targets(views_, std::max(16, options_.side_px >> std::max(0, options_.halvings - level)),
                               bounds_.center());
       if (level == 0) color_from_views();
       run_level(std::max(1, int(share[level] * total)), total, level);

@@ -25,6 +25,8 @@ struct SurfelFieldOptions {
   int most_surfels = 3000;  ///< ever
   int renderings = 2000;    ///< of a view, forward and backward, at the most
   int side_px = 400;        ///< [px] longer side of the pictures at the end; a quarter of it first
+  int halvings = 2;         ///< of that side, in [0, 2], at the start
+  double lowpass_px = 0.7071;  ///< see SurfelOptions
   int batch = 4;            ///< views per step
   double common_albedo = 0.3;  ///< weight of the surfels' departure from one albedo
   double smoothness = 0.3;     ///< weight of neighbours' departure from a common plane

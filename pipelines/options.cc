@@ -135,6 +135,8 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfels-most", &o->most_surfels, "surfels", 10, 1e5, "Ever");
   f->add("surfel-renderings", &o->renderings, "of a view", 0, 1e6, "Forward and backward, at most");
   f->add("surfel-side", &o->side_px, "px", 64, 4096, "Longer side of the pictures they are fitted to");
+  f->add("surfel-halvings", &o->halvings, "", 0, 2, "Of that side at the start");
+  f->add("surfel-lowpass", &o->lowpass_px, "px", 0.1, 2, "Smallest standard deviation of a drawn surfel");
   f->choose("surfel-kernel", &o->kernel, {"gaussian", "skew-normal"}, "Profile of a surfel");
   f->add("surfel-shading", &o->shading, "Colours follow normals under one light");
   f->choose("surfel-density", &o->density, {"steep", "clone-split", "fixed"},
