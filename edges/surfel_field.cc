@@ -68,6 +68,20 @@ struct BatchSum {
   SurfelGradient gradient;
 };
 
+// Do normals and light explain the greys of the surfels (1) or is it print (0)? Then what is dark
+// would be taken for what is turned away.
+double evenness(const SurfelCloud& cloud, const Eigen::VectorXd& grey, const Illumination& light) {
+  constexpr double kPrint = 0.06;  // departure from the mean grey that halves the say of normals
+  const Eigen::Matrix3Xd shades =
+      shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), light);
+  std::vector<double> off(grey.size());
+  for (int i = 0; i < grey.size(); ++i) off[i] = std::abs(grey[i] - shades(0, i));
+  std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
+  const double part = off[off.size() / 2] / std::max(1e-6, grey.mean());
+  if (getenv("DBG")) fprintf(stderr, "PRINT %g\n", part);
+  return 1 / (1 + std::pow(part / kPrint, 2));
+}
+
 // Of the whole cloud, where only some of it was drawn.
 SurfelInfluence spread_influence(SurfelInfluence part, const std::vector<int>& indices, int n) {
   std::vector<int> first(n + 1, 0);
@@ -154,6 +168,7 @@ class Trainer {
       const Eigen::VectorXd grey = color.colwise().mean();
       field_.illumination = fit_illumination(cloud, grey, weight, bounds_);
       field_.surfels.values.bottomRows<3>() = common_.replicate(1, n);
+      field_.evenness = evenness(cloud, grey, field_.illumination);
     } else {
       field_.surfels.values.bottomRows<3>() = color;
     }
@@ -244,8 +259,13 @@ class Trainer {
     Eigen::Matrix3Xd by_albedo = sum.gradient.color;
     Eigen::Matrix<double, kShadingTerms, 4> by_light;
     if (options_.shading) {
+      const Eigen::Matrix4Xd rotation = sum.gradient.rotation;
+      const Eigen::Matrix3Xd center = sum.gradient.center;
       shade_backward(cloud, set.albedo(), field_.illumination, &sum.gradient, &by_albedo,
                      &by_light);
+      const double share = field_.evenness * options_.shading_pull;
+      sum.gradient.rotation = rotation + share * (sum.gradient.rotation - rotation);
+      sum.gradient.center = center + share * (sum.gradient.center - center);
       pull_albedo(batch, &by_albedo);
     }
     if (options_.smoothness > 0)
@@ -386,26 +406,6 @@ double surfel_field_loss(const SurfelField& field, const std::vector<TrainingVie
                        options, &by_images);
   }
   return sum / std::max<size_t>(1, views.size());
-}
-
-GeometryMaps render_geometry(const SurfelField& field, const View& view) {
-  SurfelRenderer renderer(field.drawing);
-  std::vector<int> facing;
-  const SurfelImages& images =
-      renderer.forward(facing_surfels(field.cloud(), view, &facing), view);
-  GeometryMaps maps;
-  const int w = view.camera.width, h = view.camera.height;
-  maps.alpha = images.alpha;
-  maps.depth = Image<float>(w, h);
-  maps.normal.fill(Image<float>(w, h));
-  for (int i = 0; i < w * h; ++i) {
-    const Eigen::Vector3f n(images.normal[0].data[i], images.normal[1].data[i],
-                            images.normal[2].data[i]);
-    if (images.alpha.data[i] < 0.5f || !(n.norm() > 1e-6f)) continue;
-    maps.depth.data[i] = images.depth.data[i] / images.alpha.data[i];
-    for (int c = 0; c < 3; ++c) maps.normal[c].data[i] = n[c] / n.norm();
-  }
-  return maps;
 }
 
 }  // namespace sketchsplat

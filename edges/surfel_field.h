@@ -23,15 +23,17 @@ struct SurfelFieldOptions {
   bool merge = true;
   int surfels = 2000;       ///< at the start
   int most_surfels = 3000;  ///< ever
-  int renderings = 2000;    ///< of a view, forward and backward, at the most
+  int renderings = 1200;    ///< of a view, forward and backward, at the most
   int side_px = 400;        ///< [px] longer side of the pictures at the end; a quarter of it first
-  int halvings = 2;         ///< of that side, in [0, 2], at the start
+  int halvings = 1;         ///< of that side, in [0, 2], at the start
   double lowpass_px = 0.7071;  ///< see SurfelOptions
   int batch = 4;            ///< views per step
   double common_albedo = 0.3;  ///< weight of the surfels' departure from one albedo
+  double shading_pull = 1;      ///< share of the shading gradient that reaches normals, [0, 1]
   double smoothness = 0.3;     ///< weight of neighbours' departure from a common plane
   double smooth_angle_deg = 20;  ///< [deg] turn between neighbours that is an edge
   double merge_cosine = 0.9;
+  double mode_deg = 25;        ///< [deg] of what is one surface at a pixel, see render_geometry
   SurfelLossOptions loss;
   PhotoHullOptions hull;
 };
@@ -40,6 +42,7 @@ struct SurfelFieldOptions {
 struct SurfelField {
   SurfelSet surfels;
   Illumination illumination;  ///< all 0 if colours do not follow normals
+  double evenness = 1;  ///< how far light and normals alone explain the colours, [0, 1]
   SurfelOptions drawing;
   double spacing = 0;      ///< of the first surfels, world units
   std::vector<double> losses;  ///< mean of each tenth of the steps
@@ -60,8 +63,10 @@ SurfelField train_surfels(const std::vector<TrainingView>& views,
 double surfel_field_loss(const SurfelField& field, const std::vector<TrainingView>& views,
                          int side_px, const SurfelLossOptions& options);
 
-/// What the field looks like from a view: depth and unit normals where alpha >= 1/2, else none.
-GeometryMaps render_geometry(const SurfelField& field, const View& view);
+/// What the field looks like from a view: depth and unit normals where alpha >= 1/2, else none. Of
+/// the surfels that make a pixel those count that lie with the heaviest part of them on one surface:
+/// normals within `mode_deg` of each other and on one plane to the spacing; 0: all of them, blended.
+GeometryMaps render_geometry(const SurfelField& field, const View& view, double mode_deg);
 
 /// PLY (binary, little endian) in the layout that viewers of 2DGS open: x, y, z, nx, ny, nz,
 /// f_dc_0..2, opacity (logit), scale_0, scale_1 (logarithms), rot_0..3 (w, x, y, z). Returned as

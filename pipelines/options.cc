@@ -150,6 +150,10 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfel-smooth-angle", &o->smooth_angle_deg, "deg", 1, 90, "Turn that neighbours keep");
   f->add("surfel-carving", &o->hull.sweeps, "sweeps", 0, 10000,
          "Of the first surface, where views disagree");
+  f->add("surfel-mode", &o->mode_deg, "deg", 0, 90,
+         "Turn of what is one surface at a pixel; 0 blends all surfels");
+  f->add("surfel-shading-pull", &o->shading_pull, "", 0, 1,
+         "Share of the gradient of the shading that reaches normals");
   f->add("surfel-snap", &all->surfel_snap_px, "px", 0, 20,
          "Edges of the image so near say where an edge is; 0 leaves it to the surfels");
 }

@@ -74,7 +74,7 @@ class SurfelDetector : public Detector {
 
   EdgelMap detect(const Scene&, const View& view) const override {
     const Picture picture = read_masked(view);
-    GeometryMaps maps = render_geometry(field_, view);
+    GeometryMaps maps = render_geometry(field_, view, options_.surfels.mode_deg);
     maps.alpha = picture.alpha;  // sharper than that of surfels
     EdgelMap map = geometry_edges(maps, view.camera, options_.geometry);
     if (options_.surfel_snap_px > 0)
@@ -83,7 +83,7 @@ class SurfelDetector : public Detector {
   }
 
   bool geometry(const Scene&, const View& view, GeometryMaps* maps) const override {
-    *maps = render_geometry(field_, view);
+    *maps = render_geometry(field_, view, options_.surfels.mode_deg);
     return true;
   }
   bool learns() const override { return true; }
