@@ -10,7 +10,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kSide = 200;      // [px] of the pictures that are compared: a cell is about two
+constexpr double kCellPx = 2;      // [px] of a cell in the pictures that are compared, about
 constexpr int kFewestViews = 4;  // that may condemn a cell
 
 // What a view says about cells.
@@ -45,7 +45,12 @@ cv::Mat1f signed_distance(const Image<float>& alpha) {
 }
 
 Witness make_witness(const TrainingView& full, double cell, const Eigen::Vector3d& middle) {
-  const TrainingView small = shrink(full, kSide);
+  const Camera& camera = full.view.camera;
+  const double distance = std::max(1e-9, (full.view.cam_from_world * middle).z());
+  const double ratio = kCellPx * distance / (camera.fx * cell);
+  const TrainingView small =
+      shrink(full, std::max(16, int(std::lround(std::min(ratio, 1.0) *
+                                                std::max(camera.width, camera.height)))));
   Witness w;
   w.view = small.view;
   w.inside = signed_distance(small.alpha);
@@ -53,8 +58,7 @@ Witness make_witness(const TrainingView& full, double cell, const Eigen::Vector3
   for (size_t i = 0; i < small.alpha.data.size(); ++i)
     grey.at<float>(int(i)) =
         (small.color[0].data[i] + small.color[1].data[i] + small.color[2].data[i]) / 3;
-  const double z = std::max(1e-9, (w.view.cam_from_world * middle).z());
-  w.radius = std::max(1, int(std::ceil(0.7 * cell * w.view.camera.fx / z)));
+  w.radius = std::max(1, int(std::ceil(0.7 * cell * w.view.camera.fx / distance)));
   const cv::Mat kernel = cv::getStructuringElement(
       cv::MORPH_RECT, cv::Size(2 * w.radius + 1, 2 * w.radius + 1));
   cv::erode(grey, w.low, kernel, cv::Point(-1, -1), 1, cv::BORDER_REPLICATE);

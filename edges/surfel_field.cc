@@ -71,7 +71,7 @@ struct BatchSum {
 // Do normals and light explain the greys of the surfels (1) or is it print (0)? Then what is dark
 // would be taken for what is turned away.
 double evenness(const SurfelCloud& cloud, const Eigen::VectorXd& grey, const Illumination& light) {
-  constexpr double kPrint = 0.06;  // departure from the mean grey that halves the say of normals
+  constexpr double kPrint = 0.02;  // departure from the mean grey that halves the say of normals
   const Eigen::Matrix3Xd shades =
       shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), light);
   std::vector<double> off(grey.size());
@@ -79,7 +79,7 @@ double evenness(const SurfelCloud& cloud, const Eigen::VectorXd& grey, const Ill
   std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
   const double part = off[off.size() / 2] / std::max(1e-6, grey.mean());
   if (getenv("DBG")) fprintf(stderr, "PRINT %g\n", part);
-  return 1 / (1 + std::pow(part / kPrint, 2));
+  return 1 / (1 + std::pow(part / kPrint, 4));
 }
 
 // Of the whole cloud, where only some of it was drawn.
@@ -240,7 +240,7 @@ class Trainer {
   // Of the surfels' albedo from the common one; softly, that prints may differ.
   void pull_albedo(double batch, Eigen::Matrix3Xd* by_albedo) const {
     const int n = field_.surfels.size();
-    const double w = batch * options_.common_albedo / (3.0 * n);
+    const double w = batch * field_.evenness * options_.common_albedo / (3.0 * n);
     for (int i = 0; i < n; ++i)
       for (int c = 0; c < 3; ++c) {
         const double d = field_.surfels.values(SurfelSet::kAlbedo + c, i) - common_[c];
