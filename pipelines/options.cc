@@ -18,9 +18,10 @@ const std::vector<Preset>& presets() {
         {"rounds", "1"},
         {"lift-views", "16"},
         {"polish-rounds", "4"},
-        {"polish-spacing", "5"}}},
+        {"polish-spacing", "5"},
+        {"surfel-renderings", "500"}}},
       {"balanced", {}},
-      {"accurate", {{"steps", "60"}, {"lift-views", "49"}, {"lift-stride", "2"}}},
+      {"accurate", {{"steps", "60"}, {"lift-views", "49"}, {"lift-stride", "2"}, {"surfel-renderings", "2400"}}},
   };
   return list;
 }
@@ -135,6 +136,7 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfels-most", &o->most_surfels, "surfels", 10, 1e5, "Ever");
   f->add("surfel-renderings", &o->renderings, "of a view", 0, 1e6, "Forward and backward, at most");
   f->add("surfel-side", &o->side_px, "px", 64, 4096, "Longer side of the pictures they are fitted to");
+  f->add("surfel-batch", &o->batch, "views", 1, 64, "Drawn for one step");
   f->add("surfel-halvings", &o->halvings, "", 0, 2, "Of that side at the start");
   f->add("surfel-lowpass", &o->lowpass_px, "px", 0.1, 2, "Smallest standard deviation of a drawn surfel");
   f->choose("surfel-kernel", &o->kernel, {"gaussian", "skew-normal"}, "Profile of a surfel");
