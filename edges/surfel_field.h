@@ -27,7 +27,7 @@ struct SurfelFieldOptions {
   int side_px = 400;        ///< [px] longer side of the pictures at the end; a quarter of it first
   int halvings = 1;         ///< of that side, in [0, 2], at the start
   double lowpass_px = 0.7071;  ///< see SurfelOptions
-  int batch = 4;            ///< views per step
+  int batch = 2;            ///< views per step
   double common_albedo = 0.3;  ///< weight of the surfels' departure from one albedo
   double shading_pull = 1;      ///< share of the shading gradient that reaches normals, [0, 1]
   double smoothness = 0.3;     ///< weight of neighbours' departure from a common plane
