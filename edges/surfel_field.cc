@@ -78,7 +78,6 @@ double evenness(const SurfelCloud& cloud, const Eigen::VectorXd& grey, const Ill
   for (int i = 0; i < grey.size(); ++i) off[i] = std::abs(grey[i] - shades(0, i));
   std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
   const double part = off[off.size() / 2] / std::max(1e-6, grey.mean());
-  if (getenv("DBG")) fprintf(stderr, "PRINT %g\n", part);
   return 1 / (1 + std::pow(part / kPrint, 4));
 }
 
@@ -100,14 +99,17 @@ class Trainer {
 
   SurfelField run() {
     field_.drawing.kernel = options_.kernel;
-    field_.drawing.lowpass_px = options_.lowpass_px;
     seed();
     if (field_.surfels.size() == 0) return field_;
     const int total = std::max(1, options_.renderings / options_.batch);
     const double share[3] = {0.3, 0.35, 0.35};
     for (int level = 0; level < 3; ++level) {
-      targets_ = make_targets(views_, std::max(16, options_.side_px >> std::max(0, options_.halvings - level)),
-                              bounds_.center());
+      // The same smallest footprint in space at all levels: a wider one would bulge over the outline,
+      // and surfaces sink to make up for it.
+      const int halvings = std::max(0, options_.halvings - level);
+      field_.drawing.lowpass_px = options_.lowpass_px / (1 << halvings);
+      targets_ =
+          make_targets(views_, std::max(16, options_.side_px >> halvings), bounds_.center());
       if (level == 0) color_from_views();
       run_level(std::max(1, int(share[level] * total)), total, level);
     }
