@@ -22,15 +22,20 @@ Image<int> integral(const Image<uint8_t>& mask) {
   return sum;
 }
 
-// Does a box of half size r around (x, y) touch the mask? What leaves the image is not judged.
-bool touches(const Image<int>& sum, double x, double y, double r) {
+// How much of a box of half size r around (x, y) the mask holds. What leaves the image is not
+// judged.
+enum Share : uint8_t { kNone, kSome, kAll };
+Share share(const Image<int>& sum, double x, double y, double r) {
   const int w = sum.width - 1, h = sum.height - 1;
-  if (!(x >= 0 && y >= 0 && x <= w - 1 && y <= h - 1)) return true;
+  if (!(x >= 0 && y >= 0 && x <= w - 1 && y <= h - 1)) return kSome;
   r = std::min(r, double(w + h));  // a box around the camera itself has no bounds
   const int x0 = std::max(0, int(x - r)), x1 = std::min(w, int(x + r) + 2);
   const int y0 = std::max(0, int(y - r)), y1 = std::min(h, int(y + r) + 2);
-  return sum.at(x1, y1) - sum.at(x0, y1) - sum.at(x1, y0) + sum.at(x0, y0) > 0;
+  const int held = sum.at(x1, y1) - sum.at(x0, y1) - sum.at(x1, y0) + sum.at(x0, y0);
+  return held == 0 ? kNone : held == (x1 - x0) * (y1 - y0) ? kAll : kSome;
 }
+
+constexpr double kSurroundings = 2.5;  // cells
 
 }  // namespace
 
@@ -48,15 +53,17 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
   nx_ = std::max(1, int(n.x())), ny_ = std::max(1, int(n.y())), nz_ = std::max(1, int(n.z()));
   occupied_.assign(size_t(nx_) * ny_ * nz_, 0);
   const auto in_all_masks = [&](const Eigen::Vector3d& p, double radius) {
+    Share least = kAll;
     for (size_t m = 0; m < masked.size(); ++m) {
       const View& v = world.views[masked[m]];
       double z;
       const Eigen::Vector2d q = v.project(p, &z);
-      if (z > 0 && !touches(sums[m], q.x(), q.y(), radius * v.camera.fx / z)) return false;
+      if (z > 0) least = std::min(least, share(sums[m], q.x(), q.y(), radius * v.camera.fx / z));
+      if (least == kNone) break;
     }
-    return true;
+    return least;
   };
-  // Blocks of cells first: most of space is empty.
+  // Blocks of cells first: most of space is empty, most of the rest deep inside.
   constexpr int kBlock = 4;
   const double half_diagonal = 0.87;  // of a cell, half the square root of 3
 #pragma omp parallel for schedule(dynamic, 1)
@@ -65,28 +72,39 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
       for (int i0 = 0; i0 < nx_; i0 += kBlock) {
         const Eigen::Vector3d middle =
             low_ + cell_ * (Eigen::Vector3d(i0, j0, k0) + Eigen::Vector3d::Constant(kBlock / 2.0));
-        if (!in_all_masks(middle, kBlock * half_diagonal * cell_)) continue;
+        const Share block = in_all_masks(middle, kBlock * half_diagonal * cell_);
+        if (block == kNone) continue;
         for (int k = k0; k < std::min(nz_, k0 + kBlock); ++k)
           for (int j = j0; j < std::min(ny_, j0 + kBlock); ++j)
             for (int i = i0; i < std::min(nx_, i0 + kBlock); ++i) {
               const Eigen::Vector3d p = low_ + cell_ * Eigen::Vector3d(i + .5, j + .5, k + .5);
-              occupied_[(size_t(k) * ny_ + j) * nx_ + i] = in_all_masks(p, half_diagonal * cell_);
+              occupied_[(size_t(k) * ny_ + j) * nx_ + i] =
+                  block == kAll ? kAll : in_all_masks(p, half_diagonal * cell_);
             }
       }
 }
 
-bool VisualHull::inside(const Eigen::Vector3d& p) const {
+uint8_t VisualHull::at(const Eigen::Vector3d& p) const {
   const Eigen::Vector3d q = (p - low_) / cell_;
-  if (!(q.minCoeff() >= 0) || q.x() >= nx_ || q.y() >= ny_ || q.z() >= nz_) return false;
+  if (!(q.minCoeff() >= 0) || q.x() >= nx_ || q.y() >= ny_ || q.z() >= nz_) return kNone;
   return occupied_[(size_t(q.z()) * ny_ + size_t(q.y())) * nx_ + size_t(q.x())];
 }
 
 bool VisualHull::surely_visible(const Eigen::Vector3d& point, const Eigen::Vector3d& camera) const {
   if (empty()) return false;
   const Eigen::Vector3d way = camera - point;
-  const double length = way.norm(), diagonal = cell_ * (nx_ + ny_ + nz_);
-  for (double s = 2.5 * cell_; s < std::min(length, diagonal); s += 0.7 * cell_)
-    if (inside(point + way * (s / length))) return false;
+  const double length = way.norm();
+  // Where the line of sight leaves the grid.
+  const Eigen::Array3d size = cell_ * Eigen::Array3d(nx_, ny_, nz_);
+  const Eigen::Array3d far = (way.array() > 0).select(low_.array() + size, low_.array());
+  double end = length;
+  for (int k = 0; k < 3; ++k)
+    if (way[k] != 0) end = std::min(end, std::max(0.0, (far[k] - point[k]) / way[k] * length));
+  // Nearby cells may hold the point's own surface, but no more than its surface.
+  for (double s = 0; s < std::min(kSurroundings * cell_, end); s += 0.35 * cell_)
+    if (at(point + way * (s / length)) == kAll) return false;
+  for (double s = kSurroundings * cell_; s < end; s += 0.7 * cell_)
+    if (at(point + way * (s / length)) != kNone) return false;
   return true;
 }
 

@@ -21,16 +21,17 @@ class VisualHull {
   VisualHull(const EdgeWorld& world, int cells);
 
   bool empty() const { return occupied_.empty(); }
-  /// Does nothing of the hull stand between the point and the camera, but for the point's own
-  /// surroundings (two and a half cells)? False if the hull is empty.
+  /// Does nothing of the hull stand between the point and the camera, but for the hull's surface
+  /// in the point's own surroundings (two and a half cells)? False if the hull is empty.
   bool surely_visible(const Eigen::Vector3d& point, const Eigen::Vector3d& camera) const;
 
  private:
-  bool inside(const Eigen::Vector3d& p) const;
+  uint8_t at(const Eigen::Vector3d& p) const;
 
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
   double cell_ = 0;
   int nx_ = 0, ny_ = 0, nz_ = 0;
+  /// Of a cell: 0 outside a mask, 1 across the edge of one, 2 inside all.
   std::vector<uint8_t> occupied_;
 };
 

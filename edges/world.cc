@@ -9,7 +9,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kGrid = 48;
-constexpr int kHullCells = 64;
+constexpr int kHullCells = 128;
 
 // The point nearest to all optical axes.
 Eigen::Vector3d meeting_point(const std::vector<View>& views) {

@@ -12,7 +12,7 @@ struct CloseOptions {
   double least_deg = 15;    ///< [deg] between strokes that meet: others run side by side
   double bridge_px = 1;     ///< [px] of the pieces of one line from it, over a gap
   double least_turn = 0.6;  ///< share of a circle from which an arc may be all of it
-  double least_seen = 0.3;  ///< share of the sure sightings of a gap that must see it
+  double least_seen = 0.15; ///< share of the sure sightings of a gap that must see it
 };
 
 struct Closed {

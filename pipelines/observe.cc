@@ -18,7 +18,10 @@ double median(std::vector<float>* values) {
   return (*values)[k];
 }
 
-StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, int min_views) {
+}  // namespace
+
+StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, int min_views,
+                      const std::vector<std::vector<char>>* ignored) {
   StrokeStats s;
   std::vector<std::vector<float>> by_view(world.views.size());
   std::vector<float> width, strength;
@@ -30,6 +33,7 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, 
     covered += o.matches.views_of(i) >= min_views;
     for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m) {
       const SampleMatch& match = o.matches.matches[m];
+      if (ignored && (*ignored)[match.view][match.edgel]) continue;
       const Edgel& e = world.maps[match.view].edgels[match.edgel];
       by_view[match.view].push_back(match.distance_px);
       squares += double(match.distance_px) * match.distance_px;
@@ -54,8 +58,6 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, 
   return s;
 }
 
-}  // namespace
-
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
                     double spacing_px, int min_views) {
   Observation o;
@@ -63,7 +65,8 @@ Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOpt
   o.samples = evaluate_samples(sketch, o.layout);
   o.matches =
       match_samples(world, {o.samples.position, o.samples.tangent, o.layout.first}, options);
-  for (int i = 0; i < sketch.size(); ++i) o.strokes.push_back(summarise(world, o, i, min_views));
+  for (int i = 0; i < sketch.size(); ++i)
+    o.strokes.push_back(summarise(world, o, i, min_views, nullptr));
   return o;
 }
 

@@ -14,7 +14,7 @@ struct StrokeStats {
   int views = 0;         ///< in which it explains edgels
   double rms_px = 0;     ///< of its distances
   double bias_px = 0;    ///< median over the views of |median distance in a view|
-  double still = 0;       ///< share of its edgels within 0.25 px of it
+  double still = 0;      ///< share of its edgels within 0.25 px of it
   double outline = 0;    ///< share of its edgels that lie on an outline
   double cover = 0;      ///< share of its samples that enough views see
   double width_px = 0;   ///< median width of its edgels
@@ -34,6 +34,11 @@ struct Observation {
 /// Samples every `spacing_px` footprints; `min_views` views make a sample covered.
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
                     double spacing_px, int min_views);
+
+/// What the edgels say about one stroke, but for those that are `ignored` (per view and edgel; may
+/// be null). `cover` counts all.
+StrokeStats summarise(const EdgeWorld& world, const Observation& observation, int stroke,
+                      int min_views, const std::vector<std::vector<char>>* ignored);
 
 /// Copies what was seen into the sketch's evidence (opacity = cover).
 void record_evidence(const Observation& observation, Sketch* sketch);

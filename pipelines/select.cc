@@ -80,13 +80,16 @@ double seen_share(const EdgeWorld& world, const Observation& o, int stroke) {
   return sure > 0 ? double(seen) / sure : -1;
 }
 
+Verdict judge_extent(const StrokeStats& s, const SelectOptions& options) {
+  if (s.length_px < options.min_length_px) return Verdict::kShort;
+  return s.cover < options.min_cover ? Verdict::kUncovered : Verdict::kKept;
+}
+
 // Is this an edge of the object, or the contour of a curved surface, or an accident? Contours move
 // with the view, so they scatter, stand off from view to view, and are not there where a fixed edge
 // would be seen for sure. The more a stroke moves, the more often it must be seen.
 Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
               const SelectOptions& options) {
-  if (s.length_px < options.min_length_px) return Verdict::kShort;
-  if (s.cover < options.min_cover) return Verdict::kUncovered;
   if (s.rms_px > options.max_rms_px + sigma) return Verdict::kScattered;
   if (s.bias_px > options.max_bias_px + sigma) return Verdict::kMoving;
   if (sharp > 0 && s.width_px > options.max_width * sharp) return Verdict::kBlurred;
@@ -131,16 +134,21 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   std::vector<int> per_view(world.views.size());
   Selection result;
   result.verdicts.resize(sketch.size());
+  result.stats = o.strokes;
   std::vector<bool> keep(sketch.size());
   for (int i : order) {
-    const StrokeStats& s = o.strokes[i];
-    result.verdicts[i] = judge(s, seen[i], sharp, sigma, options);
+    result.verdicts[i] = judge_extent(o.strokes[i], options);
     if (result.verdicts[i] != Verdict::kKept) continue;
     const Claim c = claim(o, i, owned, &per_view);
-    if (c.views < options.min_views || c.edgels < options.min_own * s.matches) {
+    if (c.views < options.min_views || c.edgels < options.min_own * o.strokes[i].matches) {
       result.verdicts[i] = Verdict::kRedundant;
       continue;
     }
+    // Where two edges run side by side, the better one has explained its edgels already.
+    const StrokeStats s = summarise(world, o, i, options.min_views, &owned);
+    result.stats[i] = s;
+    result.verdicts[i] = judge(s, seen[i], sharp, sigma, options);
+    if (result.verdicts[i] != Verdict::kKept) continue;
     keep[i] = true;
     own(world, o, i, &owned);
   }
@@ -150,7 +158,6 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     result.remap.stroke.push_back(keep[i] ? next++ : -1);
     result.changes += !keep[i];
   }
-  result.stats = o.strokes;
   result.seen = seen;
   return result;
 }

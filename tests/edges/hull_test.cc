@@ -44,6 +44,15 @@ TEST(VisualHull, AFrontPointOfACubeIsSurelyVisibleAndABackPointIsNot) {
   }
 }
 
+TEST(VisualHull, AWallTwoCellsThickHidesWhatIsBehindIt) {
+  const VisualHull hull(cube_world(true), 12);
+  const double cell = 0.6 / 12;
+  for (const Vector3d& camera : {Vector3d(0.5, 0.5, 3.5), Vector3d(0.6, 0.9, 3.5)}) {
+    EXPECT_TRUE(hull.surely_visible({0.52, 0.47, 0.8}, camera));
+    EXPECT_FALSE(hull.surely_visible({0.52, 0.47, 0.8 - 2.4 * cell}, camera));
+  }
+}
+
 TEST(VisualHull, TheWorldBringsItsOwn) {
   const EdgeWorld w = cube_world(true);
   ASSERT_FALSE(w.hull.empty());

@@ -130,6 +130,29 @@ TEST(Select, ParallelEdgesFourPixelsApartAreTwo) {
   EXPECT_EQ(select_strokes(s, w, {}).sketch.size(), 2);
 }
 
+TEST(Select, AnEdgeStaysThoughManyViewsSeeAnotherOneInItsPlace) {
+  Sketch s;
+  const Vector3d gap(0, 0, 3 * kPixel);
+  add_line(&s, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
+  add_line(&s, Vector3d(0.1, 0.5, 0.5) + gap, Vector3d(0.9, 0.5, 0.5) + gap);
+  // Where they lie less than 1.5 px apart there is one edge in the picture: the first.
+  int apart = 0;
+  const EdgeWorld w = world_of(60, [&](int, const View& v) {
+    double z;
+    std::vector<Polyline> seen = {polyline_of(s, 0)};
+    const Eigen::Vector2d p = v.project({0.5, 0.5, 0.5}, &z), q = v.project({0.6, 0.5, 0.5}, &z);
+    const Eigen::Vector2d d = v.project(Vector3d(0.5, 0.5, 0.5) + gap, &z) - p;
+    const Eigen::Vector2d along = (q - p).normalized();
+    if (std::abs(d.x() * along.y() - d.y() * along.x()) < 1.5) return seen;
+    seen.push_back(polyline_of(s, 1));
+    ++apart;
+    return seen;
+  });
+  ASSERT_GT(apart, 20);
+  ASSERT_LT(apart, 50);
+  EXPECT_EQ(select_strokes(s, w, {}).sketch.size(), 2);
+}
+
 TEST(Select, SaysWhyAStrokeFalls) {
   Sketch s = cube();
   const int tiny = add_line(&s, {0.2, 0.2, 0.3}, {0.2, 0.2, 0.3 + 2 * kPixel});
