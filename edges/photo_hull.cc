@@ -10,7 +10,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kCellPx = 2;      // [px] of a cell in the pictures that are compared, about
+constexpr double kCellPx = 2;    // [px] of a cell in the pictures that are compared, about
 constexpr int kFewestViews = 4;  // that may condemn a cell
 
 // What a view says about cells.
@@ -48,9 +48,9 @@ Witness make_witness(const TrainingView& full, double cell, const Eigen::Vector3
   const Camera& camera = full.view.camera;
   const double distance = std::max(1e-9, (full.view.cam_from_world * middle).z());
   const double ratio = kCellPx * distance / (camera.fx * cell);
-  const TrainingView small =
-      shrink(full, std::max(16, int(std::lround(std::min(ratio, 1.0) *
-                                                std::max(camera.width, camera.height)))));
+  const TrainingView small = shrink(
+      full,
+      std::max(16, int(std::lround(std::min(ratio, 1.0) * std::max(camera.width, camera.height)))));
   Witness w;
   w.view = small.view;
   w.inside = signed_distance(small.alpha);
@@ -59,8 +59,8 @@ Witness make_witness(const TrainingView& full, double cell, const Eigen::Vector3
     grey.at<float>(int(i)) =
         (small.color[0].data[i] + small.color[1].data[i] + small.color[2].data[i]) / 3;
   w.radius = std::max(1, int(std::ceil(0.7 * cell * w.view.camera.fx / distance)));
-  const cv::Mat kernel = cv::getStructuringElement(
-      cv::MORPH_RECT, cv::Size(2 * w.radius + 1, 2 * w.radius + 1));
+  const cv::Mat kernel =
+      cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * w.radius + 1, 2 * w.radius + 1));
   cv::erode(grey, w.low, kernel, cv::Point(-1, -1), 1, cv::BORDER_REPLICATE);
   cv::dilate(grey, w.high, kernel, cv::Point(-1, -1), 1, cv::BORDER_REPLICATE);
   return w;
@@ -178,7 +178,8 @@ void smooth(Grid* g) {
     for (const int s : stride) {
       std::vector<float> out = g->field;
       for (int c = s; c + s < g->size(); ++c)
-        out[c] = kernel[0] * g->field[c - s] + kernel[1] * g->field[c] + kernel[2] * g->field[c + s];
+        out[c] =
+            kernel[0] * g->field[c - s] + kernel[1] * g->field[c] + kernel[2] * g->field[c + s];
       g->field.swap(out);
     }
 }
@@ -264,8 +265,8 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
   if (all.empty()) return samples;
   // Points dropped at random until none fits any more cover 0.547 of the plane with their disks.
   samples.spacing = std::sqrt(0.7 * area / count);
-  const Eigen::AlignedBox3d box(
-      grid.low, grid.low + grid.cell * Eigen::Vector3d(grid.nx, grid.ny, grid.nz));
+  const Eigen::AlignedBox3d box(grid.low,
+                                grid.low + grid.cell * Eigen::Vector3d(grid.nx, grid.ny, grid.nz));
   const std::vector<Crossing> kept = thinned(all, box, samples.spacing);
   samples.position.resize(3, kept.size());
   samples.normal.resize(3, kept.size());

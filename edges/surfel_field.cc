@@ -5,47 +5,18 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <opencv2/imgproc.hpp>
 
 #include "edges/surfel_smooth.h"
+#include "edges/surfel_target.h"
 
 namespace sketchsplat {
 namespace {
 
-constexpr double kMaxLogit = 4.4;   // beyond it alpha would be clamped and get no gradient
+constexpr double kMaxLogit = 4.4;  // beyond it alpha would be clamped and get no gradient
 constexpr double kFirstLogit = 3.0;
-constexpr double kScale = 0.6;      // standard deviation of the first surfels, in their spacing
+constexpr double kScale = 0.6;  // standard deviation of the first surfels, in their spacing
 constexpr double kMinAlpha = 0.05;
 constexpr int kNeighbours = 8;
-
-// A view at one resolution, and which of its pixels are looked at.
-struct Target {
-  TrainingView view;
-  Image<std::uint8_t> mask;
-  double footprint = 0;
-};
-
-Target make_target(const TrainingView& full, int side, const Eigen::Vector3d& middle) {
-  Target t;
-  t.view = shrink(full, side);
-  const Camera& camera = t.view.view.camera;
-  const int w = camera.width, h = camera.height, margin = std::max(4, side / 25);
-  const cv::Mat1f alpha(h, w, t.view.alpha.data.data());
-  cv::Mat1b near;
-  cv::dilate(alpha > 0.02f, near, cv::Mat::ones(2 * margin + 1, 2 * margin + 1, CV_8U));
-  t.mask = Image<std::uint8_t>(w, h);
-  for (int i = 0; i < w * h; ++i) t.mask.data[i] = near(i / w, i % w) != 0;
-  t.footprint = std::max(1e-300, (t.view.view.cam_from_world * middle).z() / camera.fx);
-  return t;
-}
-
-std::vector<Target> make_targets(const std::vector<TrainingView>& views, int side,
-                                 const Eigen::Vector3d& middle) {
-  std::vector<Target> targets(views.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(views.size()); ++v) targets[v] = make_target(views[v], side, middle);
-  return targets;
-}
 
 // Adam (Kingma and Ba, 2015) with a rate per row.
 struct Adam {
@@ -58,8 +29,8 @@ struct Adam {
     m = 0.9 * m + 0.1 * gradient;
     v = 0.99 * v + 0.01 * gradient.cwiseAbs2();
     const double cm = 1 - std::pow(0.9, steps), cv = 1 - std::pow(0.99, steps);
-    values->array() -= ((m.array() / cm) / ((v.array() / cv).sqrt() + 1e-12)).colwise() *
-                       rate.array();
+    values->array() -=
+        ((m.array() / cm) / ((v.array() / cv).sqrt() + 1e-12)).colwise() * rate.array();
   }
 };
 
@@ -72,8 +43,7 @@ struct BatchSum {
 // would be taken for what is turned away.
 double evenness(const SurfelCloud& cloud, const Eigen::VectorXd& grey, const Illumination& light) {
   constexpr double kPrint = 0.02;  // departure from the mean grey that halves the say of normals
-  const Eigen::Matrix3Xd shades =
-      shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), light);
+  const Eigen::Matrix3Xd shades = shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), light);
   std::vector<double> off(grey.size());
   for (int i = 0; i < grey.size(); ++i) off[i] = std::abs(grey[i] - shades(0, i));
   std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
@@ -104,12 +74,11 @@ class Trainer {
     const int total = std::max(1, options_.renderings / options_.batch);
     const double share[3] = {0.3, 0.35, 0.35};
     for (int level = 0; level < 3; ++level) {
-      // The same smallest footprint in space at all levels: a wider one would bulge over the outline,
-      // and surfaces sink to make up for it.
+      // The same smallest footprint in space at all levels: a wider one would bulge over the
+      // outline, and surfaces sink to make up for it.
       const int halvings = std::max(0, options_.halvings - level);
       field_.drawing.lowpass_px = options_.lowpass_px / (1 << halvings);
-      targets_ =
-          make_targets(views_, std::max(16, options_.side_px >> halvings), bounds_.center());
+      targets_ = make_targets(views_, std::max(16, options_.side_px >> halvings), bounds_.center());
       if (level == 0) color_from_views();
       run_level(std::max(1, int(share[level] * total)), total, level);
     }
@@ -142,7 +111,7 @@ class Trainer {
 #pragma omp parallel for schedule(dynamic, 1)
     for (int v = 0; v < int(targets_.size()); ++v) {
       SurfelRenderer renderer(field_.drawing);
-      const Target& t = targets_[v];
+      const SurfelTarget& t = targets_[v];
       std::vector<int> facing;
       renderer.forward(facing_surfels(cloud, t.view.view, &facing), t.view.view, t.mask);
       const SurfelInfluence influence = renderer.influence();
@@ -183,8 +152,8 @@ class Trainer {
     r.segment<4>(SurfelSet::kRotation).setConstant(0.015 * fade);
     r.segment<2>(SurfelSet::kLogScale).setConstant(0.015 * fade);
     r[SurfelSet::kOpacity] = 0.05 * fade;
-    r.segment<2>(SurfelSet::kSkew).setConstant(
-        options_.kernel == SurfelKernel::kSkewNormal ? 0.02 * fade : 0);
+    r.segment<2>(SurfelSet::kSkew)
+        .setConstant(options_.kernel == SurfelKernel::kSkewNormal ? 0.02 * fade : 0);
     r.segment<3>(SurfelSet::kAlbedo).setConstant(0.01 * fade);
     // Skewed kernels: everything together at first; then what the kernel is, and where, by turns.
     if (options_.kernel == SurfelKernel::kSkewNormal && progress > 0.4) {
@@ -215,14 +184,13 @@ class Trainer {
 #pragma omp parallel for schedule(dynamic, 1)
     for (int b = 0; b < batch; ++b) {
       SurfelRenderer renderer(field_.drawing);
-      const Target& t = targets_[view_of(rendered_ + b)];
+      const SurfelTarget& t = targets_[view_of(rendered_ + b)];
       std::vector<int> facing;
       const SurfelCloud seen = facing_surfels(cloud, t.view.view, &facing);
       const SurfelImages& images = renderer.forward(seen, t.view.view, t.mask);
       SurfelImages by_images;
       SurfelGradient gradient;
-      each[b].loss =
-          surfel_loss(images, t.view, t.mask, t.footprint, loss_, &by_images);
+      each[b].loss = surfel_loss(images, t.view, t.mask, t.footprint, loss_, &by_images);
       renderer.backward(seen, t.view.view, by_images, &gradient);
       each[b].gradient = spread_gradient(gradient, facing, cloud.size());
     }
@@ -353,7 +321,7 @@ class Trainer {
 #pragma omp parallel for schedule(dynamic, 1)
     for (int k = 0; k < int(influences.size()); ++k) {
       SurfelRenderer renderer(field_.drawing);
-      const Target& t = targets_[view_of(k)];
+      const SurfelTarget& t = targets_[view_of(k)];
       std::vector<int> facing;
       renderer.forward(facing_surfels(cloud, t.view.view, &facing), t.view.view, t.mask);
       influences[k] = spread_influence(renderer.influence(), facing, cloud.size());
@@ -368,7 +336,7 @@ class Trainer {
   const std::function<void()> on_step_;
   SurfelField field_;
   SurfelLossOptions loss_;
-  std::vector<Target> targets_;
+  std::vector<SurfelTarget> targets_;
   Eigen::Vector3d common_ = Eigen::Vector3d::Ones();
   Adam adam_, light_adam_;
   Eigen::Matrix3Xd splitting_;
@@ -386,28 +354,9 @@ SurfelCloud SurfelField::cloud() const {
   return c;
 }
 
-SurfelField train_surfels(const std::vector<TrainingView>& views,
-                          const Eigen::AlignedBox3d& bounds, const SurfelFieldOptions& options,
-                          const std::function<void()>& step) {
+SurfelField train_surfels(const std::vector<TrainingView>& views, const Eigen::AlignedBox3d& bounds,
+                          const SurfelFieldOptions& options, const std::function<void()>& step) {
   return Trainer(views, bounds, options, step).run();
-}
-
-double surfel_field_loss(const SurfelField& field, const std::vector<TrainingView>& views,
-                         int side_px, const SurfelLossOptions& options) {
-  const SurfelCloud cloud = field.cloud();
-  const Eigen::Vector3d middle = cloud.size() ? Eigen::Vector3d(cloud.center.rowwise().mean())
-                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  double sum = 0;
-  SurfelRenderer renderer(field.drawing);
-  for (const TrainingView& view : views) {
-    const Target t = make_target(view, side_px, middle);
-    SurfelImages by_images;
-    std::vector<int> facing;
-    const SurfelCloud seen = facing_surfels(cloud, t.view.view, &facing);
-    sum += surfel_loss(renderer.forward(seen, t.view.view, t.mask), t.view, t.mask, t.footprint,
-                       options, &by_images);
-  }
-  return sum / std::max<size_t>(1, views.size());
 }
 
 }  // namespace sketchsplat

@@ -59,10 +59,6 @@ SurfelField train_surfels(const std::vector<TrainingView>& views,
                           const Eigen::AlignedBox3d& bounds, const SurfelFieldOptions& options,
                           const std::function<void()>& step = {});
 
-/// Loss of a field in all views at the given side, without regularisers.
-double surfel_field_loss(const SurfelField& field, const std::vector<TrainingView>& views,
-                         int side_px, const SurfelLossOptions& options);
-
 /// What the field looks like from a view: depth and unit normals where alpha >= 1/2, else none. Of
 /// the surfels that make a pixel those count that lie with the heaviest part of them on one surface:
 /// normals within `mode_deg` of each other and on one plane to the spacing; 0: all of them, blended.

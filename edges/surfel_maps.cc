@@ -74,7 +74,8 @@ GeometryMaps render_geometry(const SurfelField& field, const View& view, double 
   const int n = cloud.size();
   Eigen::Matrix3Xf normal(3, n), center(3, n);
   for (int i = 0; i < n; ++i) {
-    normal.col(i) = (view.cam_from_world.rotation * surfel_normal(cloud.rotation.col(i))).cast<float>();
+    normal.col(i) =
+        (view.cam_from_world.rotation * surfel_normal(cloud.rotation.col(i))).cast<float>();
     center.col(i) = (view.cam_from_world * Eigen::Vector3d(cloud.center.col(i))).cast<float>();
   }
   const Makers makers = makers_of(renderer.influence(), w * h);

@@ -176,7 +176,8 @@ Verb bench_verb() {
         "Presets to compare, with commas; if left out, those of the suite, or all");
   f.add("detectors", &arguments->detectors, "NAMES",
         "Detectors to compare, with commas; if left out, those of the suite, or image");
-  f.add("ablation", &arguments->ablation, "Compare parts of the method instead of presets; with --detectors 2dgs-sn, parts of that");
+  f.add("ablation", &arguments->ablation,
+        "Compare parts of the method instead of presets; with --detectors 2dgs-sn, parts of that");
   f.add("with", &arguments->with, "NAME=VALUE,...", "Options of reconstruct for all runs");
   f.add("repeats", &arguments->repeats, "runs", 0, 1000,
         "Of each; the fastest counts. 0 is what the suite says, or 1");

@@ -21,7 +21,11 @@ const std::vector<Preset>& presets() {
         {"polish-spacing", "5"},
         {"surfel-renderings", "500"}}},
       {"balanced", {}},
-      {"accurate", {{"steps", "60"}, {"lift-views", "49"}, {"lift-stride", "2"}, {"surfel-renderings", "2400"}}},
+      {"accurate",
+       {{"steps", "60"},
+        {"lift-views", "49"},
+        {"lift-stride", "2"},
+        {"surfel-renderings", "2400"}}},
   };
   return list;
 }
@@ -135,10 +139,12 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfels", &o->surfels, "surfels", 10, 1e5, "At the start");
   f->add("surfels-most", &o->most_surfels, "surfels", 10, 1e5, "Ever");
   f->add("surfel-renderings", &o->renderings, "of a view", 0, 1e6, "Forward and backward, at most");
-  f->add("surfel-side", &o->side_px, "px", 64, 4096, "Longer side of the pictures they are fitted to");
+  f->add("surfel-side", &o->side_px, "px", 64, 4096,
+         "Longer side of the pictures they are fitted to");
   f->add("surfel-batch", &o->batch, "views", 1, 64, "Drawn for one step");
   f->add("surfel-halvings", &o->halvings, "", 0, 2, "Of that side at the start");
-  f->add("surfel-lowpass", &o->lowpass_px, "px", 0.1, 2, "Smallest standard deviation of a drawn surfel");
+  f->add("surfel-lowpass", &o->lowpass_px, "px", 0.1, 2,
+         "Smallest standard deviation of a drawn surfel");
   f->choose("surfel-kernel", &o->kernel, {"gaussian", "skew-normal"}, "Profile of a surfel");
   f->add("surfel-shading", &o->shading, "Colours follow normals under one light");
   f->choose("surfel-density", &o->density, {"steep", "clone-split", "fixed"},
@@ -164,7 +170,8 @@ void list_surfels(DetectionOptions* all, Fields* f) {
 
 void list_fields(DetectionOptions* o, Fields* f) {
   f->choose("detector", &o->detector, {"image", "geometry", "2dgs-sn", "maps:NAME"},
-            "Edges of the images, of depth/ and normal/, of surfels fitted to the images, or in edge_NAME/");
+            "Edges of the images, of depth/ and normal/, of surfels fitted to the images, or in "
+            "edge_NAME/");
   f->add("normals", &o->normals, "DIR",
          "Normals for --detector geometry, in the scene or anywhere");
   list_detect(&o->detect, f);

@@ -129,7 +129,8 @@ class SurfelDetector : public Detector {
     }
     if (int(good.size()) < kFewestViews) {
       for (const std::string& complaint : complaints)
-        if (!complaint.empty()) throw InputError(scene.folder, "three views with a mask", complaint);
+        if (!complaint.empty())
+          throw InputError(scene.folder, "three views with a mask", complaint);
       throw TooLittleError(scene.folder + ": expected at least three views, found " +
                            std::to_string(n));
     }

@@ -62,13 +62,11 @@ TEST(SurfelShading, FindsTheLightThatShadesOneAlbedo) {
   const SurfelCloud cloud = random_cloud(400);
   Illumination light;
   light.light.col(0) << 0.5, 0.1, -0.2, 0.1, 0, 0.05, 0, 0, 0.02;
-  const Eigen::VectorXd grey =
-      shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), light).row(0);
+  const Eigen::VectorXd grey = shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), light).row(0);
   const Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1));
   const Illumination found =
       fit_illumination(cloud, grey, Eigen::VectorXd::Ones(cloud.size()), box);
-  const Eigen::VectorXd again =
-      shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), found).row(0);
+  const Eigen::VectorXd again = shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), found).row(0);
   EXPECT_LT((again - grey).cwiseAbs().maxCoeff(), 0.01);
 }
 
@@ -86,7 +84,8 @@ struct Seen {
       *image = Image<float>(kSide, kSide);
       for (float& v : image->data) v = uniform(random);
     };
-    for (int c = 0; c < 3; ++c) fill(&target.color[c]), fill(&images.color[c]), fill(&images.normal[c]);
+    for (int c = 0; c < 3; ++c)
+      fill(&target.color[c]), fill(&images.color[c]), fill(&images.normal[c]);
     fill(&target.alpha), fill(&images.alpha), fill(&images.distortion);
     images.depth = Image<float>(kSide, kSide);
     for (size_t i = 0; i < images.depth.data.size(); ++i) {
