@@ -75,7 +75,7 @@ Suite suite_of(const BenchArguments& arguments) {
     if (suite.variants.empty())
       throw UsageError("--presets, --detectors: expected at least one of each");
   }
-  if (arguments.ablation) suite.variants = ablation_variants();
+  if (arguments.ablation) suite.variants = ablation_variants_of(split(arguments.detectors, ','));
   if (arguments.repeats > 0) suite.repeats = arguments.repeats;
   check_suite_options(suite);
   Suite with;
@@ -176,7 +176,8 @@ Verb bench_verb() {
         "Presets to compare, with commas; if left out, those of the suite, or all");
   f.add("detectors", &arguments->detectors, "NAMES",
         "Detectors to compare, with commas; if left out, those of the suite, or image");
-  f.add("ablation", &arguments->ablation, "Compare parts of the method instead of presets");
+  f.add("ablation", &arguments->ablation,
+        "Compare parts of the method instead of presets; with --detectors 2dgs-sn, parts of that");
   f.add("with", &arguments->with, "NAME=VALUE,...", "Options of reconstruct for all runs");
   f.add("repeats", &arguments->repeats, "runs", 0, 1000,
         "Of each; the fastest counts. 0 is what the suite says, or 1");

@@ -9,6 +9,8 @@
 #include "datasets/geometry_maps.h"
 #include "datasets/scene.h"
 #include "eval/edge_maps.h"
+#include "eval/map_errors.h"
+#include "pipelines/geometry_files.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/detectors.h"
@@ -23,6 +25,14 @@ struct DetectArguments {
   DetectionOptions detection;
   double ridge_px = 0.7;  // half of the width in which people and networks draw edges
   bool score = false;
+  bool geometry = false;
+};
+
+// What a view's maps are worth.
+struct ViewScore {
+  EdgeMapScore edges;
+  MapErrors maps;
+  bool has_maps = false;
 };
 
 // DIR/edge_image, DIR/edge_DexiNed: where readers of ABC-NEF look for edge maps.
@@ -48,18 +58,33 @@ EdgeMapScore score_view(const Scene& scene, const View& view, const EdgelMap& ma
   return score_edge_points(points, read_edge_polylines(path), kTolerance);
 }
 
+// Depth and normals, where the detector has its own: to files, and against the true ones.
+void look_at_geometry(const Scene& scene, const Detector& detector, const View& view,
+                      const DetectArguments& arguments, ViewScore* score) {
+  const bool compare = arguments.score && detector.learns() &&
+                       !file_of_view(scene.folder + "/depth", view, ".exr").empty();
+  GeometryMaps maps;
+  if ((!compare && !arguments.geometry) || !detector.geometry(scene, view, &maps)) return;
+  if (arguments.geometry) write_geometry_maps(arguments.out, view, maps);
+  if (!compare) return;
+  score->maps = score_geometry(maps, read_geometry_maps(scene, view), view.camera);
+  score->has_maps = true;
+}
+
 // Maps, and what they are worth if that is asked for, view by view.
-std::vector<EdgeMapScore> write_maps(const Scene& scene, const std::vector<Detection>& found,
-                                     const DetectArguments& arguments) {
+std::vector<ViewScore> write_maps(const Scene& scene, const Detector& detector,
+                                  const std::vector<Detection>& found,
+                                  const DetectArguments& arguments) {
   const int n = int(found.size());
-  std::vector<EdgeMapScore> scores(n);
+  std::vector<ViewScore> scores(n);
   std::vector<std::exception_ptr> failures(n);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < n; ++i) {
     if (!found[i].complaint.empty()) continue;
     try {
       write_map(scene.views[i], found[i].map, arguments);
-      if (arguments.score) scores[i] = score_view(scene, scene.views[i], found[i].map);
+      if (arguments.score) scores[i].edges = score_view(scene, scene.views[i], found[i].map);
+      look_at_geometry(scene, detector, scene.views[i], arguments, &scores[i]);
     } catch (...) {
       failures[i] = std::current_exception();  // must not leave the parallel loop
     }
@@ -69,19 +94,42 @@ std::vector<EdgeMapScore> write_maps(const Scene& scene, const std::vector<Detec
   return scores;
 }
 
+void print_map_errors(const std::vector<ViewScore>& scores) {
+  MapErrors sum;
+  int maps = 0;
+  for (const ViewScore& s : scores) {
+    if (!s.has_maps) continue;
+    ++maps;
+    sum.normal_deg += s.maps.normal_deg, sum.depth_px += s.maps.depth_px;
+    sum.covered += s.maps.covered;
+  }
+  if (maps == 0) return;
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "mean of %d views: normals %.2f deg, depth %.2f pixel footprints (median), "
+                "covered %.1f %%\n",
+                maps, sum.normal_deg / maps, sum.depth_px / maps, 100 * sum.covered / maps);
+  std::cout << line;
+}
+
 void run_detect(const DetectArguments& arguments, Progress* progress) {
   const Scene scene = open_scene(arguments.scene, arguments.format);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
   prepare_output_folder(map_folder(arguments));
-  const std::vector<Detection> found = detect_all(scene, arguments.detection, nullptr, progress);
-  const std::vector<EdgeMapScore> scores = write_maps(scene, found, arguments);
+  const std::unique_ptr<Detector> detector = make_detector(arguments.detection);
+  if (arguments.geometry) prepare_geometry_folders(arguments.out);
+  const std::vector<Detection> found = detect_all(scene, detector.get(), nullptr, progress);
+  const std::vector<ViewScore> scores = write_maps(scene, *detector, found, arguments);
+  const std::string surfels = detector->surfels();
+  if (arguments.geometry && !surfels.empty())
+    write_atomically(arguments.out + "/surfels.ply", [&](std::ostream& file) { file << surfels; });
   int maps = 0;
   EdgeMapScore sum;
   for (size_t i = 0; i < found.size(); ++i) {
     if (!found[i].complaint.empty()) continue;
     ++maps;
-    sum.precision += scores[i].precision, sum.recall += scores[i].recall, sum.f += scores[i].f;
-    sum.rms_px += scores[i].rms_px;
+    const EdgeMapScore& s = scores[i].edges;
+    sum.precision += s.precision, sum.recall += s.recall, sum.f += s.f, sum.rms_px += s.rms_px;
   }
   std::cout << map_folder(arguments) << ": " << maps << " edge maps\n";
   if (!arguments.score) return;
@@ -92,6 +140,7 @@ void run_detect(const DetectArguments& arguments, Progress* progress) {
       kTolerance, maps, 100 * sum.precision / maps, 100 * sum.recall / maps, 100 * sum.f / maps,
       sum.rms_px / maps);
   std::cout << line;
+  print_map_errors(scores);
 }
 
 }  // namespace
@@ -112,6 +161,8 @@ Verb detect_verb() {
   f.group("Maps");
   f.add("ridge", &arguments->ridge_px, "px", 0.3, 10, "Width (one sigma) in which edges are drawn");
   f.add("score", &arguments->score, "Compare with the true edges in edges_visible/ of the scene");
+  f.add("geometry", &arguments->geometry,
+        "Write depth/, normal/, alpha/ and surfels.ply, too, if the detector has them");
   Verb verb;
   verb.name = "detect";
   verb.summary = "Write the edge map of every image";

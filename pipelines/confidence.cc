@@ -30,7 +30,8 @@ int freedom(StrokeKind kind) {
     case StrokeKind::kLine: return 4;
     case StrokeKind::kArc:
     case StrokeKind::kCircle: return 6;
-    case StrokeKind::kEllipse: return 8;
+    case StrokeKind::kEllipse:
+    case StrokeKind::kEllipticArc: return 8;
     case StrokeKind::kBezier: return 10;
   }
   return 1;

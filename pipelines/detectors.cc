@@ -2,6 +2,7 @@
 #include "pipelines/detectors.h"
 
 #include "datasets/errors.h"
+#include "pipelines/surfel_detector.h"
 
 namespace sketchsplat {
 namespace {
@@ -44,6 +45,10 @@ class GeometryDetector : public Detector {
   EdgelMap detect(const Scene& scene, const View& view) const override {
     return geometry_edges(read_geometry_maps(scene, view, normals_), view.camera, options_);
   }
+  bool geometry(const Scene& scene, const View& view, GeometryMaps* maps) const override {
+    *maps = read_geometry_maps(scene, view, normals_);
+    return true;
+  }
 
  private:
   std::string normals_;
@@ -58,13 +63,13 @@ std::unique_ptr<Detector> make_detector(const DetectionOptions& options) {
     return std::make_unique<MapDetector>(options.detector.substr(maps.size()), options.maps);
   if (options.detector == "geometry")
     return std::make_unique<GeometryDetector>(options.normals, options.geometry);
+  if (options.detector == "2dgs-sn") return make_surfel_detector(options);
   return std::make_unique<ImageDetector>(options.detect);
 }
 
-std::vector<Detection> detect_all(const Scene& scene, const DetectionOptions& options,
-                                  RunReport* report, Progress* progress) {
+std::vector<Detection> detect_all(const Scene& scene, Detector* detector, RunReport* report,
+                                  Progress* progress) {
   const int n = int(scene.views.size());
-  const std::unique_ptr<Detector> detector = make_detector(options);
   detector->prepare(scene, report, progress);
   Stage stage("detect", n, report, progress);
   std::vector<Detection> found(n);

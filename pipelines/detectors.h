@@ -10,19 +10,22 @@
 #include "edges/detect.h"
 #include "edges/detect_map.h"
 #include "edges/geometry_edges.h"
+#include "edges/surfel_field.h"
 #include "pipelines/run_report.h"
 
 namespace sketchsplat {
 
 /// Where edges come from, and the options of everything that may find them.
 struct DetectionOptions {
-  /// "image": the pictures; "geometry": depth and normal maps in the scene's folder; "maps:NAME":
-  /// edge maps of others.
+  /// "image": the pictures; "geometry": depth and normal maps in the scene's folder; "2dgs-sn":
+  /// depth and normals of surfels fitted to the pictures; "maps:NAME": edge maps of others.
   std::string detector = "image";
   std::string normals = "normal";  ///< folder of normal maps for "geometry", see geometry_maps.h
   DetectOptions detect;
   MapOptions maps;
   GeometryOptions geometry;
+  SurfelFieldOptions surfels;
+  double surfel_snap_px = 3.0;  ///< [px] an edge of the picture says where one of surfels is; 0: never
 };
 
 /// Finds the edgels of views.
@@ -35,6 +38,12 @@ class Detector {
   /// Edgels of one view. From many threads. Throws InputError, also if an image or map has another
   /// size than the view.
   virtual EdgelMap detect(const Scene& scene, const View& view) const = 0;
+  /// Does it make the geometry itself, rather than read it?
+  virtual bool learns() const { return false; }
+  /// The geometry in which the edges of a view were found; false if there is none. Throws InputError.
+  virtual bool geometry(const Scene&, const View&, GeometryMaps*) const { return false; }
+  /// The surfels as a PLY file, see surfel_ply; empty if there are none.
+  virtual std::string surfels() const { return ""; }
 };
 
 /// By the name in the options, which the detector copies.
@@ -49,7 +58,7 @@ struct Detection {
 /// Prepares the detector and asks it for all views of the scene, in their order; stage "detect". A
 /// view that cannot be read is left out with a warning. `report` and `progress` may be null. Throws
 /// InputError if no view can be read.
-std::vector<Detection> detect_all(const Scene& scene, const DetectionOptions& options,
-                                  RunReport* report, Progress* progress);
+std::vector<Detection> detect_all(const Scene& scene, Detector* detector, RunReport* report,
+                                  Progress* progress);
 
 }  // namespace sketchsplat

@@ -18,9 +18,14 @@ const std::vector<Preset>& presets() {
         {"rounds", "1"},
         {"lift-views", "16"},
         {"polish-rounds", "4"},
-        {"polish-spacing", "5"}}},
+        {"polish-spacing", "5"},
+        {"surfel-renderings", "500"}}},
       {"balanced", {}},
-      {"accurate", {{"steps", "60"}, {"lift-views", "49"}, {"lift-stride", "2"}}},
+      {"accurate",
+       {{"steps", "60"},
+        {"lift-views", "49"},
+        {"lift-stride", "2"},
+        {"surfel-renderings", "2400"}}},
   };
   return list;
 }
@@ -130,16 +135,51 @@ void list_geometry(GeometryOptions* o, Fields* f) {
   f->add("geometry-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
 }
 
+void list_surfels(DetectionOptions* all, Fields* f) {
+  SurfelFieldOptions* o = &all->surfels;
+  f->group("Surfels fitted to the images (--detector 2dgs-sn)");
+  f->add("surfels", &o->surfels, "surfels", 10, 1e5, "At the start");
+  f->add("surfels-most", &o->most_surfels, "surfels", 10, 1e5, "Ever");
+  f->add("surfel-renderings", &o->renderings, "of a view", 0, 1e6, "Forward and backward, at most");
+  f->add("surfel-side", &o->side_px, "px", 64, 4096,
+         "Longer side of the pictures they are fitted to");
+  f->add("surfel-batch", &o->batch, "views", 1, 64, "Drawn for one step");
+  f->add("surfel-halvings", &o->halvings, "", 0, 2, "Of that side at the start");
+  f->add("surfel-lowpass", &o->lowpass_px, "px", 0.1, 2,
+         "Smallest standard deviation of a drawn surfel");
+  f->choose("surfel-kernel", &o->kernel, {"gaussian", "skew-normal"}, "Profile of a surfel");
+  f->add("surfel-shading", &o->shading, "Colours follow normals under one light");
+  f->choose("surfel-density", &o->density, {"steep", "clone-split", "fixed"},
+            "Split along the splitting matrix, where footprints are pulled, or never");
+  f->add("surfel-merge", &o->merge, "Merge surfels that do the same work");
+  f->add("surfel-albedo", &o->common_albedo, "", 0, 100, "Weight of one common albedo");
+  f->add("surfel-consistency", &o->loss.consistency, "", 0, 100,
+         "Weight of normals against those of the depth");
+  f->add("surfel-distortion", &o->loss.distortion, "", 0, 100, "Weight of the spread along a ray");
+  f->add("surfel-smoothness", &o->smoothness, "", 0, 100, "Weight of common planes of neighbours");
+  f->add("surfel-smooth-angle", &o->smooth_angle_deg, "deg", 1, 90, "Turn that neighbours keep");
+  f->add("surfel-carving", &o->hull.sweeps, "sweeps", 0, 10000,
+         "Of the first surface, where views disagree");
+  f->add("surfel-mode", &o->mode_deg, "deg", 0, 90,
+         "Turn of what is one surface at a pixel; 0 blends all surfels");
+  f->add("surfel-shading-pull", &o->shading_pull, "", 0, 1,
+         "Share of the gradient of the shading that reaches normals");
+  f->add("surfel-snap", &all->surfel_snap_px, "px", 0, 20,
+         "Edges of the image so near say where an edge is; 0 leaves it to the surfels");
+}
+
 }  // namespace
 
 void list_fields(DetectionOptions* o, Fields* f) {
-  f->choose("detector", &o->detector, {"image", "geometry", "maps:NAME"},
-            "Edges of the images, of depth/ and normal/, or in edge_NAME/");
+  f->choose("detector", &o->detector, {"image", "geometry", "2dgs-sn", "maps:NAME"},
+            "Edges of the images, of depth/ and normal/, of surfels fitted to the images, or in "
+            "edge_NAME/");
   f->add("normals", &o->normals, "DIR",
          "Normals for --detector geometry, in the scene or anywhere");
   list_detect(&o->detect, f);
   list_maps(&o->maps, f);
   list_geometry(&o->geometry, f);
+  list_surfels(o, f);
 }
 
 void list_fields(CommonOptions* o, Fields* f) {

@@ -21,7 +21,8 @@ constexpr int kFewestViews = 3;
 
 EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
                        Progress* progress) {
-  std::vector<Detection> found = detect_all(scene, options, report, progress);
+  std::vector<Detection> found =
+      detect_all(scene, make_detector(options).get(), report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
   size_t edgels = 0, with_edges = 0;

@@ -226,10 +226,11 @@ Suite suite_of(const Place& place) {
   suite.path = place.path;
   suite.name = place.has("name") ? place["name"].text() : fs::path(place.path).stem().string();
   suite.scenes = scenes_of(place);
+  const Names detectors = place.has("detectors") ? place["detectors"].texts() : Names{"image"};
   suite.variants =
-      preset_variants(place.has("presets") ? place["presets"].texts() : preset_names(),
-                      place.has("detectors") ? place["detectors"].texts() : Names{"image"});
-  if (place.has("ablation") && place["ablation"].boolean()) suite.variants = ablation_variants();
+      preset_variants(place.has("presets") ? place["presets"].texts() : preset_names(), detectors);
+  if (place.has("ablation") && place["ablation"].boolean())
+    suite.variants = ablation_variants_of(detectors);
   if (place.has("seeds")) {
     suite.seeds.clear();
     for (const std::string& seed : seeds_of(place["seeds"])) suite.seeds.push_back(std::stoi(seed));

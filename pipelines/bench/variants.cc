@@ -36,4 +36,23 @@ std::vector<BenchVariant> ablation_variants() {
   };
 }
 
+std::vector<BenchVariant> ablation_variants_of(const std::vector<std::string>& detectors) {
+  if (detectors != std::vector<std::string>{"2dgs-sn"}) return ablation_variants();
+  std::vector<BenchVariant> variants = {
+      {"2dgs-sn", {}},
+      {"skew-normal kernel", {{"surfel-kernel", "skew-normal"}}},
+      {"without shading", {{"surfel-shading", "false"}}},
+      {"clone and split", {{"surfel-density", "clone-split"}}},
+      {"fixed number of surfels", {{"surfel-density", "fixed"}}},
+      {"without merging", {{"surfel-merge", "false"}}},
+      {"without smoothness", {{"surfel-smoothness", "0"}}},
+      {"without carving", {{"surfel-carving", "0"}}},
+      {"normals blended", {{"surfel-mode", "0"}}},
+      {"edges where surfels say", {{"surfel-snap", "0"}}},
+  };
+  for (BenchVariant& variant : variants) variant.options.push_back({"detector", "2dgs-sn"});
+  variants.push_back({"image", {{"detector", "image"}}});
+  return variants;
+}
+
 }  // namespace sketchsplat

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include "edges/photo_hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+namespace sketchsplat {
+namespace {
+
+constexpr double kCellPx = 2;    // [px] of a cell in the pictures that are compared, about
+constexpr int kFewestViews = 4;  // that may condemn a cell
+
+// What a view says about cells.
+struct Witness {
+  View view;
+  cv::Mat1f inside;     // distance to the outline [px], negative outside the mask
+  cv::Mat1f low, high;  // least and largest grey within a cell's footprint
+  cv::Mat1f depth;      // of the nearest cell
+  int radius = 1;       // [px] of a cell
+
+  bool project(const Eigen::Vector3d& p, int* x, int* y, double* z) const {
+    const Eigen::Vector2d q = view.project(p, z);
+    if (!(*z > 0 && view.camera.contains(q))) return false;
+    *x = int(q.x() + 0.5), *y = int(q.y() + 0.5);
+    return true;
+  }
+};
+
+cv::Mat1f signed_distance(const Image<float>& alpha) {
+  const cv::Mat1f a(alpha.height, alpha.width, const_cast<float*>(alpha.data.data()));
+  cv::Mat1b in = a >= 0.5f, out = a < 0.5f;
+  cv::Mat1f to_out, to_in;
+  cv::distanceTransform(in, to_out, cv::DIST_L2, cv::DIST_MASK_5);
+  cv::distanceTransform(out, to_in, cv::DIST_L2, cv::DIST_MASK_5);
+  // Distances are to centres of pixels; the outline is half a pixel nearer.
+  cv::Mat1f d(a.size());
+  for (int i = 0; i < a.rows * a.cols; ++i) {
+    const int y = i / a.cols, x = i % a.cols;
+    d(y, x) = in(y, x) ? to_out(y, x) - 0.5f : 0.5f - to_in(y, x);
+  }
+  return d;
+}
+
+Witness make_witness(const TrainingView& full, double cell, const Eigen::Vector3d& middle) {
+  const Camera& camera = full.view.camera;
+  const double distance = std::max(1e-9, (full.view.cam_from_world * middle).z());
+  const double ratio = kCellPx * distance / (camera.fx * cell);
+  const TrainingView small = shrink(
+      full,
+      std::max(16, int(std::lround(std::min(ratio, 1.0) * std::max(camera.width, camera.height)))));
+  Witness w;
+  w.view = small.view;
+  w.inside = signed_distance(small.alpha);
+  cv::Mat1f grey(small.alpha.height, small.alpha.width);
+  for (size_t i = 0; i < small.alpha.data.size(); ++i)
+    grey.at<float>(int(i)) =
+        (small.color[0].data[i] + small.color[1].data[i] + small.color[2].data[i]) / 3;
+  w.radius = std::max(1, int(std::ceil(0.7 * cell * w.view.camera.fx / distance)));
+  const cv::Mat kernel =
+      cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * w.radius + 1, 2 * w.radius + 1));
+  cv::erode(grey, w.low, kernel, cv::Point(-1, -1), 1, cv::BORDER_REPLICATE);
+  cv::dilate(grey, w.high, kernel, cv::Point(-1, -1), 1, cv::BORDER_REPLICATE);
+  return w;
+}
+
+struct Grid {
+  Eigen::Vector3d low;
+  double cell = 0;
+  int nx = 0, ny = 0, nz = 0;
+  std::vector<float> field;  // > 0 inside, in cells, about the distance to the surface
+
+  int size() const { return nx * ny * nz; }
+  int index(int i, int j, int k) const { return (k * ny + j) * nx + i; }
+  Eigen::Vector3d center(int c) const {
+    return low + cell * Eigen::Vector3d(c % nx + .5, c / nx % ny + .5, c / (nx * ny) + .5);
+  }
+  bool inside(int i, int j, int k) const {
+    return i >= 0 && j >= 0 && k >= 0 && i < nx && j < ny && k < nz && field[index(i, j, k)] > 0;
+  }
+  bool on_surface(int c) const {
+    if (!(field[c] > 0)) return false;
+    const int i = c % nx, j = c / nx % ny, k = c / (nx * ny);
+    return !inside(i - 1, j, k) || !inside(i + 1, j, k) || !inside(i, j - 1, k) ||
+           !inside(i, j + 1, k) || !inside(i, j, k - 1) || !inside(i, j, k + 1);
+  }
+};
+
+Grid visual_hull(const std::vector<Witness>& witnesses, const Eigen::AlignedBox3d& bounds,
+                 int cells) {
+  Grid g;
+  g.cell = bounds.sizes().maxCoeff() / cells;
+  g.low = bounds.min() - Eigen::Vector3d::Constant(2 * g.cell);
+  const Eigen::Vector3d n = (bounds.sizes() / g.cell).array().ceil() + 4;
+  g.nx = int(n.x()), g.ny = int(n.y()), g.nz = int(n.z());
+  g.field.assign(g.size(), 0);
+  constexpr float kFar = 3;  // cells
+#pragma omp parallel for schedule(dynamic, 256)
+  for (int c = 0; c < g.size(); ++c) {
+    float f = kFar;
+    for (const Witness& w : witnesses) {
+      int x, y;
+      double z;
+      if (!w.project(g.center(c), &x, &y, &z)) continue;
+      f = std::min(f, float(w.inside(y, x) * z / (w.view.camera.fx * g.cell)));
+      if (f <= -kFar) break;
+    }
+    g.field[c] = std::max(f, -kFar);
+  }
+  // What no view looks at is not known to be there.
+  for (int c = 0; c < g.size(); ++c) {
+    const int i = c % g.nx, j = c / g.nx % g.ny, k = c / (g.nx * g.ny);
+    if (!i || !j || !k || i == g.nx - 1 || j == g.ny - 1 || k == g.nz - 1) g.field[c] = -kFar;
+  }
+  return g;
+}
+
+void draw_depth(const Grid& g, const std::vector<int>& surface, Witness* w) {
+  w->depth = cv::Mat1f(w->inside.size(), std::numeric_limits<float>::max());
+  for (const int c : surface) {
+    int x, y;
+    double z;
+    if (!w->project(g.center(c), &x, &y, &z)) continue;
+    for (int v = std::max(0, y - w->radius); v <= std::min(w->depth.rows - 1, y + w->radius); ++v)
+      for (int u = std::max(0, x - w->radius); u <= std::min(w->depth.cols - 1, x + w->radius); ++u)
+        w->depth(v, u) = std::min(w->depth(v, u), float(z));
+  }
+}
+
+// Can so many of the views that see the cell see one grey there?
+bool consistent(const Eigen::Vector3d& p, const std::vector<Witness>& witnesses, double cell,
+                const PhotoHullOptions& options) {
+  std::vector<std::pair<float, int>> ends;
+  int seen = 0;
+  for (const Witness& w : witnesses) {
+    int x, y;
+    double z;
+    if (!w.project(p, &x, &y, &z) || z > w.depth(y, x) + 1.5 * cell) continue;
+    ends.push_back({w.low(y, x) - float(options.tolerance), -1});
+    ends.push_back({w.high(y, x) + float(options.tolerance), 1});
+    ++seen;
+  }
+  if (seen < kFewestViews) return true;
+  std::sort(ends.begin(), ends.end());
+  int open = 0, most = 0;
+  for (const auto& end : ends) most = std::max(most, open -= end.second);
+  return most >= options.agree * seen;
+}
+
+int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, Grid* g) {
+  int carved = 0;
+  for (int sweep = 0; sweep < options.sweeps; ++sweep) {
+    std::vector<int> surface;
+    for (int c = 0; c < g->size(); ++c)
+      if (g->on_surface(c)) surface.push_back(c);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int w = 0; w < int(witnesses->size()); ++w) draw_depth(*g, surface, &(*witnesses)[w]);
+    std::vector<char> gone(surface.size(), 0);
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int s = 0; s < int(surface.size()); ++s)
+      gone[s] = !consistent(g->center(surface[s]), *witnesses, g->cell, options);
+    int count = 0;
+    for (size_t s = 0; s < surface.size(); ++s)
+      if (gone[s]) g->field[surface[s]] = -1, ++count;
+    carved += count;
+    if (count * 2000 < int(surface.size())) break;
+  }
+  return carved;
+}
+
+// Cells are steps; a surface is not.
+void smooth(Grid* g) {
+  const float kernel[3] = {0.25f, 0.5f, 0.25f};
+  const int stride[3] = {1, g->nx, g->nx * g->ny};
+  for (int pass = 0; pass < 2; ++pass)
+    for (const int s : stride) {
+      std::vector<float> out = g->field;
+      for (int c = s; c + s < g->size(); ++c)
+        out[c] =
+            kernel[0] * g->field[c - s] + kernel[1] * g->field[c] + kernel[2] * g->field[c + s];
+      g->field.swap(out);
+    }
+}
+
+struct Crossing {
+  Eigen::Vector3d position, normal;
+};
+
+// Where the field changes its sign along the grid's lines, and the area of the surface (each axis
+// counts the surface's shadow along it).
+std::vector<Crossing> crossings(const Grid& g, double* area) {
+  const int stride[3] = {1, g.nx, g.nx * g.ny};
+  const auto gradient = [&](int c) {
+    Eigen::Vector3d d;
+    for (int a = 0; a < 3; ++a) d[a] = g.field[c + stride[a]] - g.field[c - stride[a]];
+    return d;
+  };
+  std::vector<Crossing> out;
+  *area = 0;
+  for (int k = 1; k < g.nz - 2; ++k)
+    for (int j = 1; j < g.ny - 2; ++j)
+      for (int i = 1; i < g.nx - 2; ++i)
+        for (int a = 0; a < 3; ++a) {
+          const int c = g.index(i, j, k), d = c + stride[a];
+          if ((g.field[c] > 0) == (g.field[d] > 0)) continue;
+          const double t = g.field[c] / (double(g.field[c]) - g.field[d]);
+          Crossing x;
+          x.position = (1 - t) * g.center(c) + t * g.center(d);
+          x.normal = -((1 - t) * gradient(c) + t * gradient(d));
+          if (!(x.normal.norm() > 1e-9)) continue;
+          x.normal.normalize();
+          *area += g.cell * g.cell * std::abs(x.normal[a]);
+          out.push_back(x);
+        }
+  return out;
+}
+
+// Points no nearer to each other than `spacing`, drawn in a fixed disorder.
+std::vector<Crossing> thinned(std::vector<Crossing> all, const Eigen::AlignedBox3d& box,
+                              double spacing) {
+  std::mt19937 random(1);
+  for (size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
+  const Eigen::Vector3i n = (box.sizes() / spacing).array().ceil().cast<int>() + 3;
+  std::vector<std::vector<int>> bins(size_t(n.x()) * n.y() * n.z());
+  const auto bin = [&](const Eigen::Vector3i& q) {
+    return (size_t(q.z()) * n.y() + q.y()) * n.x() + q.x();
+  };
+  std::vector<Crossing> out;
+  for (const Crossing& x : all) {
+    const Eigen::Array3i cell = ((x.position - box.min()) / spacing).array().floor().cast<int>();
+    const Eigen::Vector3i q = cell.max(0).min(n.array() - 3) + 1;
+    bool free = true;
+    for (int k = -1; k <= 1; ++k)
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1 && free; ++i)
+          for (const int other : bins[bin(q + Eigen::Vector3i(i, j, k))])
+            free = free && (out[other].position - x.position).norm() >= spacing;
+    if (!free) continue;
+    bins[bin(q)].push_back(int(out.size()));
+    out.push_back(x);
+  }
+  return out;
+}
+
+}  // namespace
+
+SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
+                                  const Eigen::AlignedBox3d& bounds, int count,
+                                  const PhotoHullOptions& options) {
+  SurfaceSamples samples;
+  if (views.empty() || bounds.isEmpty() || !(bounds.sizes().maxCoeff() > 0)) return samples;
+  const double cell = bounds.sizes().maxCoeff() / options.cells;
+  std::vector<Witness> witnesses(views.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < int(views.size()); ++v)
+    witnesses[v] = make_witness(views[v], cell, bounds.center());
+  Grid grid = visual_hull(witnesses, bounds, options.cells);
+  samples.carved = carve(options, &witnesses, &grid);
+  samples.cell = grid.cell;
+  smooth(&grid);
+  double area = 0;
+  const std::vector<Crossing> all = crossings(grid, &area);
+  if (all.empty()) return samples;
+  // Points dropped at random until none fits any more cover 0.547 of the plane with their disks.
+  samples.spacing = std::sqrt(0.7 * area / count);
+  const Eigen::AlignedBox3d box(grid.low,
+                                grid.low + grid.cell * Eigen::Vector3d(grid.nx, grid.ny, grid.nz));
+  const std::vector<Crossing> kept = thinned(all, box, samples.spacing);
+  samples.position.resize(3, kept.size());
+  samples.normal.resize(3, kept.size());
+  for (size_t i = 0; i < kept.size(); ++i) {
+    samples.position.col(i) = kept[i].position;
+    samples.normal.col(i) = kept[i].normal;
+  }
+  return samples;
+}
+
+}  // namespace sketchsplat

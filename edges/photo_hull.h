@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "edges/training_view.h"
+
+namespace sketchsplat {
+
+struct PhotoHullOptions {
+  int cells = 96;           ///< along the longest side of the bounds
+  int sweeps = 60;          ///< of carving, at the most; 0 leaves the visual hull
+  double tolerance = 0.02;  ///< grey values in [0, 1] by which views may differ
+  double agree = 0.75;      ///< share of the views that must be able to see one grey
+};
+
+/// Points on a closed surface.
+struct SurfaceSamples {
+  Eigen::Matrix3Xd position;
+  Eigen::Matrix3Xd normal;  ///< unit, outwards
+  double spacing = 0;       ///< least distance of two points, world units
+  double cell = 0;          ///< of the grid that they were taken from, world units
+  int carved = 0;           ///< cells that were taken away because the views disagree
+};
+
+/// About `count` points spread over the surface of the photo hull: the cells that every mask holds
+/// (Laurentini, PAMI 1994) less those where the views that see them do not agree on a grey
+/// (Kutulakos and Seitz, A theory of shape by space carving, IJCV 2000). A view's say is the range
+/// of greys within the cell's footprint, so that cells on edges stay. Empty if nothing is left. The
+/// same for any number of threads.
+SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
+                                  const Eigen::AlignedBox3d& bounds, int count,
+                                  const PhotoHullOptions& options);
+
+}  // namespace sketchsplat

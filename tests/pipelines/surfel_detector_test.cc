@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/surfel_detector.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <filesystem>
+
+#include "datasets/errors.h"
+#include "datasets/geometry_maps.h"
+#include "eval/edge_maps.h"
+#include "eval/map_errors.h"
+#include "tests/pipelines/rendered_part.h"
+
+namespace sketchsplat {
+namespace {
+
+// A plate with a round hole, with its truth; small.
+struct Rendered {
+  TempFolder folder;
+  Scene scene;
+  Rendered(Style style, int views, int resolution) {
+    SynthesizeOptions options;
+    options.part = "box-hole";
+    options.seed = 2;
+    options.rig.views = views;
+    options.rig.resolution = resolution;
+    options.rig.object_size = 0.6;
+    options.render.style = style;
+    options.render.noise = 2;
+    options.outputs = "all";
+    write_scene(synthesize(options), folder.path());
+    scene = open_scene(folder.path());
+  }
+};
+
+DetectionOptions small_options(int renderings) {
+  DetectionOptions options;
+  options.detector = "2dgs-sn";
+  options.surfels.renderings = renderings;
+  options.surfels.surfels = 700;
+  options.surfels.most_surfels = 1200;
+  options.surfels.batch = 2;  // more steps for the same time
+  options.surfels.hull.cells = 64;
+  return options;
+}
+
+// Means over the views.
+struct Worth {
+  EdgeMapScore edges;
+  MapErrors maps;
+};
+
+Worth worth(const Scene& scene, const DetectionOptions& options) {
+  const std::unique_ptr<Detector> detector = make_detector(options);
+  const std::vector<Detection> found = detect_all(scene, detector.get(), nullptr, nullptr);
+  Worth sum;
+  const double n = double(found.size());
+  for (size_t v = 0; v < found.size(); ++v) {
+    const View& view = scene.views[v];
+    const std::vector<Edgel>& edgels = found[v].map.edgels;
+    Eigen::Matrix2Xd points(2, edgels.size());
+    for (size_t k = 0; k < edgels.size(); ++k) points.col(k) << edgels[k].x, edgels[k].y;
+    const EdgeMapScore s = score_edge_points(
+        points, read_edge_polylines(file_of_view(scene.folder + "/edges_visible", view, ".json")),
+        1.5);
+    sum.edges.precision += s.precision / n, sum.edges.f += s.f / n;
+    GeometryMaps maps;
+    if (!detector->geometry(scene, view, &maps)) continue;
+    const MapErrors e = score_geometry(maps, read_geometry_maps(scene, view), view.camera);
+    sum.maps.normal_deg += e.normal_deg / n, sum.maps.depth_px += e.depth_px / n;
+    sum.maps.covered += e.covered / n;
+  }
+  return sum;
+}
+
+TEST(SurfelDetector, FindsEdgesOfTheShapeBelowItsPrint) {
+  const Rendered part(Style::kTextured, 16, 160);
+  const Worth surfels = worth(part.scene, small_options(300));
+  DetectionOptions image;
+  const Worth pictures = worth(part.scene, image);
+  RecordProperty("normal_deg", std::to_string(surfels.maps.normal_deg));
+  RecordProperty("depth_px", std::to_string(surfels.maps.depth_px));
+  RecordProperty("f", std::to_string(surfels.edges.f));
+  RecordProperty("precision", std::to_string(surfels.edges.precision));
+  EXPECT_LT(surfels.maps.normal_deg, 12);
+  EXPECT_LT(surfels.maps.depth_px, 1.5);
+  EXPECT_GT(surfels.maps.covered, 0.95);
+  EXPECT_GT(surfels.edges.f, 0.75);
+  EXPECT_GT(surfels.edges.precision, pictures.edges.precision + 0.25);
+}
+
+TEST(SurfelDetector, FindsTheShapeOfPlainFaces) {
+  const Rendered part(Style::kPlain, 16, 160);
+  const Worth plain = worth(part.scene, small_options(300));
+  RecordProperty("normal_deg", std::to_string(plain.maps.normal_deg));
+  RecordProperty("f", std::to_string(plain.edges.f));
+  EXPECT_LT(plain.maps.normal_deg, 12.5);
+  EXPECT_GT(plain.edges.f, 0.85);
+}
+
+TEST(SurfelDetector, GivesTheSameBytesForAnyNumberOfThreads) {
+  const Rendered part(Style::kTextured, 8, 120);
+  std::string bytes[2];
+  const int before = omp_get_max_threads();
+  for (const int threads : {1, 2}) {
+    omp_set_num_threads(threads);
+    const std::unique_ptr<Detector> detector = make_detector(small_options(40));
+    detector->prepare(part.scene, nullptr, nullptr);
+    bytes[threads / 2] = detector->surfels();
+  }
+  omp_set_num_threads(before);
+  EXPECT_FALSE(bytes[0].empty());
+  EXPECT_TRUE(bytes[0] == bytes[1]);
+}
+
+TEST(SurfelDetector, SaysWhatIsMissing) {
+  const Rendered part(Style::kPlain, 4, 100);
+  for (const View& v : part.scene.views) std::filesystem::remove(v.image_path);
+  EXPECT_THROW(make_detector(small_options(8))->prepare(part.scene, nullptr, nullptr), InputError);
+}
+
+EdgelMap line_at(float y, int from, int to) {
+  EdgelMap map;
+  map.width = map.height = 100;
+  map.chain = {0, to - from};
+  for (int x = from; x < to; ++x) {
+    Edgel e;
+    e.x = float(x), e.y = y, e.nx = 0, e.ny = 1;
+    map.edgels.push_back(e);
+  }
+  build_lookup(&map, 4);
+  return map;
+}
+
+TEST(SnapEdgels, PictureSaysWhereAndGeometryWhether) {
+  const EdgelMap picture = line_at(50, 10, 40), geometry = line_at(51.5f, 20, 80);
+  const EdgelMap both = snap_edgels(geometry, picture, 3);
+  int of_picture = 0, of_geometry = 0;
+  for (const Edgel& e : both.edgels) {
+    of_picture += e.y == 50;
+    of_geometry += e.y == 51.5f && e.x > 39;
+  }
+  EXPECT_NEAR(of_picture, 22, 2);  // not 10..17, where there is no geometry
+  EXPECT_NEAR(of_geometry, 39, 3);
+  EXPECT_EQ(of_picture + of_geometry, int(both.edgels.size()));
+  EXPECT_TRUE(snap_edgels(line_at(80, 0, 0), picture, 3).edgels.empty());
+}
+
+}  // namespace
+}  // namespace sketchsplat
