@@ -270,7 +270,7 @@ TEST(Step, WritesEveryRealWithAPointAndColoursEveryEdge) {
   EXPECT_GT(points, 10);
   const std::regex styled("=STYLED_ITEM\\("), colour("=COLOUR_RGB\\(");
   EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), styled), {}), s.size());
-  EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), colour), {}), 5);
+  EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), colour), {}), 6);
 }
 
 TEST(Step, RefersOnlyToEntitiesThatAreThere) {
@@ -303,7 +303,8 @@ TEST(Step, OpensInFreeCad) {
       0);
   std::ifstream in(folder / "kinds.txt");
   const std::string kinds{std::istreambuf_iterator<char>(in), {}};
-  EXPECT_EQ(kinds, "GeomBSplineCurve GeomCircle GeomCircle GeomEllipse GeomLine GeomLine");
+  EXPECT_EQ(kinds,
+            "GeomBSplineCurve GeomCircle GeomCircle GeomEllipse GeomEllipse GeomLine GeomLine");
   fs::remove_all(folder);
 }
 
