@@ -53,7 +53,7 @@ struct ReconstructOptions : DetectionOptions {
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
   bool final_polish = true;  ///< end on the edgels themselves
-  double min_confidence = 0.1;  ///< probability below which a stroke is left out at last
+  double min_confidence = 0;  ///< probability below which a stroke is left out at last
 };
 
 /// What files for CAD programs say beside the curves.
