@@ -66,8 +66,8 @@ def strokes_of(binary, scene, result):
         rows = json.load(file)["strokes"]
     with open(result + "/strokes.csv") as file:
         share = {row["stroke"]: float(row["share"]) for row in csv.DictReader(file)}
-    for i, row in enumerate(rows):
-        row["right"] = share[str(i)] >= 90
+    for row in rows:
+        row["right"] = share[str(int(row["curve"]))] >= 90
     return rows
 
 

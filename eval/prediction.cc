@@ -13,6 +13,7 @@
 #include "datasets/ply.h"
 #include "eval/parameters.h"
 #include "sketches/curve.h"
+#include "sketches/curve_chain.h"
 #include "sketches/io.h"
 
 namespace fs = std::filesystem;
@@ -81,17 +82,29 @@ Prediction read_points(const std::string& path) {
 // objects.
 constexpr double kPieces = 1000;
 
-void add_stroke(const Sketch& sketch, int s, Prediction* prediction) {
-  if (sketch.strokes[s].kind == StrokeKind::kLine) {
-    const ControlPoints c = control_points(sketch, s);
-    prediction->lines.emplace_back();
-    prediction->lines.back() << c.p[0], c.p[1];
-  } else {
-    for (const auto& cubic : to_cubics(sketch, s)) prediction->curves.push_back(cubic);
+// Degrees of freedom of a curve of n cubics that go on smoothly from one another: a joint ties its
+// place and its tangent.
+int chain_freedom(const std::string& kind, size_t n) {
+  const int each = degrees_of_freedom(kind);
+  return each + int(n - 1) * (each - 5);
+}
+
+void add_curve(const Sketch& sketch, const CurveChain& chain, int index, Prediction* prediction) {
+  double length = 0;
+  for (int s : chain.strokes) {
+    length += stroke_length(sketch, s);
+    if (sketch.strokes[s].kind == StrokeKind::kLine) {
+      const ControlPoints c = control_points(sketch, s);
+      prediction->lines.emplace_back();
+      prediction->lines.back() << c.p[0], c.p[1];
+    } else {
+      for (const auto& cubic : to_cubics(sketch, s)) prediction->curves.push_back(cubic);
+    }
   }
-  prediction->strokes.push_back(sample_stroke(sketch, s, stroke_length(sketch, s) / kPieces));
-  const std::string kind = kind_name(sketch.strokes[s].kind);
-  prediction->facts.push_back({std::to_string(s), kind, degrees_of_freedom(kind)});
+  prediction->strokes.push_back(sample_chain(sketch, chain, length / kPieces));
+  const std::string kind = kind_name(sketch.strokes[chain.strokes[0]].kind);
+  prediction->facts.push_back(
+      {std::to_string(index), kind, chain_freedom(kind, chain.strokes.size())});
 }
 
 // NEF's files hold cubics (or, of its first stage, lines) in cells of a 256^3 grid over
@@ -131,7 +144,8 @@ Prediction read_json(const std::string& path) {
       in.clear();
       in.seekg(0);
       const Sketch sketch = read_sketch_json(in, path);
-      for (int s = 0; s < sketch.size(); ++s) add_stroke(sketch, s, &prediction);
+      const std::vector<CurveChain> chains = curve_chains(sketch);
+      for (size_t c = 0; c < chains.size(); ++c) add_curve(sketch, chains[c], int(c), &prediction);
     } else if (document.contains("points")) {
       prediction.points_only = true;
       const auto points = groups_of<1>(document, {"points"}, path);

@@ -4,12 +4,14 @@
 #include <omp.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "pipelines/overlay.h"
 #include "pipelines/report_page.h"
 #include "sketches/curve.h"
+#include "sketches/curve_chain.h"
 
 namespace sketchsplat {
 namespace {
@@ -43,15 +45,17 @@ Json stages_json(const RunReport& run) {
 Json counts_json(const ReportInput& input) {
   const Sketch& sketch = input.reconstruction->sketch;
   Json counts = object_of(input.reconstruction->report.counts);
-  counts["curves"] = sketch.size();
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  const std::vector<bool> inner = inner_joints(sketch, chains);
+  counts["curves"] = chains.size();
   for (const StrokeKind kind :
        {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle, StrokeKind::kEllipse,
         StrokeKind::kEllipticArc, StrokeKind::kBezier}) {
     int n = 0;
-    for (const Stroke& stroke : sketch.strokes) n += stroke.kind == kind;
+    for (const CurveChain& chain : chains) n += sketch.strokes[chain.strokes[0]].kind == kind;
     counts[kind_name(kind) + std::string("s")] = n;
   }
-  counts["junctions"] = sketch.nodes.cols();
+  counts["junctions"] = std::count(inner.begin(), inner.end(), false);
   return counts;
 }
 

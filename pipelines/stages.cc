@@ -10,19 +10,20 @@
 #include "pipelines/detectors.h"
 #include "pipelines/kinds.h"
 #include "pipelines/observe.h"
+#include "sketches/curve_chain.h"
 #include "sketches/segment.h"
 
 namespace sketchsplat {
 namespace {
 
 constexpr int kFewestViews = 3;
+constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
 
 }  // namespace
 
 EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
                        Progress* progress) {
-  std::vector<Detection> found =
-      detect_all(scene, make_detector(options).get(), report, progress);
+  std::vector<Detection> found = detect_all(scene, make_detector(options).get(), report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
   size_t edgels = 0, with_edges = 0;
@@ -216,12 +217,15 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
   Regularized regular;
   if (options.final_polish) {
     Observation last;
-    out = polish(closed.sketch, world, options.polish, &last);
+    PolishOptions smooth = options.polish;  // what is nearly one curve becomes one
+    smooth.smooth_sigma_deg *= kSmoother;
+    out = polish(closed.sketch, world, smooth, &last);
     if (options.regularize.on && last.layout.size() > 0) {
       regular = regularize(out, last, world.footprint, regularize_options(options));
       out = regular.sketch;
     }
   }
+  smooth_joints(&out);
   MatchOptions match;
   match.reach_px = 1.0;
   const Observation o =
@@ -232,6 +236,11 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
   report->counts.push_back({"ends_joined", double(closed.joined)});
   report->counts.push_back({"lines_bridged", double(closed.bridged)});
   report->counts.push_back({"arcs_rounded", double(closed.rounded)});
+  const std::vector<CurveChain> chains = curve_chains(out);
+  const std::vector<int> curve = chain_of_strokes(chains, out.size());
+  for (Regularity& r : regular.kept)
+    for (int& s : r.strokes) s = curve[s];
+  for (int s = 0; s < out.size(); ++s) report->strokes[s].push_back({"curve", double(curve[s])});
   count_regularities(regular, report);
   report->counts.push_back({"unsure", double(unsure)});
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});

@@ -136,6 +136,40 @@ std::vector<double> span_intervals(const Eigen::Matrix3Xd& p) {
   return out;
 }
 
+Spline chain_spline(const Sketch& sketch, const CurveChain& chain) {
+  const Eigen::Matrix3Xd p = chain_points(sketch, chain);
+  const int n = int(chain.strokes.size());
+  Spline out;
+  out.points.resize(3, 2 * n + 2);
+  out.points.leftCols<2>() = p.leftCols<2>();
+  for (int k = 0; k < n; ++k) out.points.col(2 * k + 2) = p.col(3 * k + 2);
+  for (int k = 1; k < n; ++k) out.points.col(2 * k + 1) = p.col(3 * k + 1);
+  out.points.rightCols<1>() = p.rightCols<1>();
+  out.breaks = {0};
+  for (double h : span_intervals(p)) out.breaks.push_back(out.breaks.back() + h);
+  const double total = out.breaks.back();
+  for (double& b : out.breaks) b /= total;
+  out.breaks.back() = 1;
+  return out;
+}
+
+std::vector<int> chain_of_strokes(const std::vector<CurveChain>& chains, int strokes) {
+  std::vector<int> out(strokes, -1);
+  for (size_t c = 0; c < chains.size(); ++c)
+    for (int s : chains[c].strokes) out[s] = int(c);
+  return out;
+}
+
+std::vector<bool> inner_joints(const Sketch& sketch, const std::vector<CurveChain>& chains) {
+  std::vector<bool> inner(sketch.nodes.cols());
+  for (const CurveChain& chain : chains)
+    for (size_t k = 1; k < chain.strokes.size(); ++k) {
+      const Stroke& s = sketch.strokes[chain.strokes[k]];
+      inner[chain.reversed[k] ? s.end : s.begin] = true;
+    }
+  return inner;
+}
+
 Eigen::Matrix3Xd sample_chain(const Sketch& sketch, const CurveChain& chain, double spacing) {
   Eigen::Matrix3Xd out(3, 0);
   for (size_t k = 0; k < chain.strokes.size(); ++k) {
@@ -161,8 +195,13 @@ Evidence chain_evidence(const Sketch& sketch, const CurveChain& chain) {
     squares += length * e.rms_px * e.rms_px;
     out.support_views = std::min(out.support_views, e.support_views);
     out.sigma = std::max(out.sigma, e.sigma);
+    out.views.insert(out.views.end(), e.views.begin(), e.views.end());
     if (std::isnan(e.confidence) || e.confidence < out.confidence) out.confidence = e.confidence;
   }
+  std::sort(out.views.begin(), out.views.end());
+  out.views.erase(std::unique(out.views.begin(), out.views.end()), out.views.end());
+  if (!out.views.empty()) out.support_views = int(out.views.size());
+  out.covariance.clear(), out.determined = 0;
   if (total > 0) out.opacity = opacity / total, out.rms_px = std::sqrt(squares / total);
   return out;
 }

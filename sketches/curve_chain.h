@@ -38,11 +38,25 @@ Eigen::Matrix3Xd chain_points(const Sketch& sketch, const CurveChain& chain);
 /// 5.6).
 std::vector<double> span_intervals(const Eigen::Matrix3Xd& chain_points);
 
+/// A chain of cubics as one B-spline of degree 3: knots with multiplicities 4, 2, .., 2, 4 and 2 n
+/// + 2 control points.
+struct Spline {
+  Eigen::Matrix3Xd points;     ///< 3 x (2 n + 2)
+  std::vector<double> breaks;  ///< n + 1 distinct knots, from 0 to 1
+};
+Spline chain_spline(const Sketch& sketch, const CurveChain& chain);
+
+/// Of every stroke, the index of its chain.
+std::vector<int> chain_of_strokes(const std::vector<CurveChain>& chains, int strokes);
+
+/// Nodes that are joints within a chain and no vertex of the graph.
+std::vector<bool> inner_joints(const Sketch& sketch, const std::vector<CurveChain>& chains);
+
 /// Samples every `spacing` at most, 3 x N, from begin to end of the chain.
 Eigen::Matrix3Xd sample_chain(const Sketch& sketch, const CurveChain& chain, double spacing);
 
-/// Evidence of the chain: means weighted by length; the least confidence and number of views, the
-/// largest sigma.
+/// Evidence of the chain: means weighted by length; the least confidence, the largest sigma, the
+/// views that see any of it; no covariance if it has several strokes.
 Evidence chain_evidence(const Sketch& sketch, const CurveChain& chain);
 
 }  // namespace sketchsplat

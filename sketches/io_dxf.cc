@@ -6,6 +6,7 @@
 
 #include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "sketches/curve_chain.h"
 #include "sketches/io.h"
 #include "sketches/io_number.h"
 
@@ -190,18 +191,21 @@ void write_elliptic_arc(DxfFile* file, const EllipticArcParameters& e) {
                 turn(e.half_angle - shift));
 }
 
-void write_spline(DxfFile* file, const ControlPoints& c) {
+void write_spline(DxfFile* file, const Spline& spline) {
+  const int n = int(spline.breaks.size()), points = int(spline.points.cols());
   entity(file, "SPLINE", StrokeKind::kBezier).subclass("Spline").whole(70, 0).whole(71, 3);
-  file->whole(72, 8).whole(73, 4).whole(74, 0);
-  for (int k = 0; k < 8; ++k) file->real(40, k < 4 ? 0 : 1);
-  for (int k = 0; k < 4; ++k) file->point(10, c.p[k]);
+  file->whole(72, points + 4).whole(73, points).whole(74, 0);
+  for (int k = 0; k < n; ++k)
+    for (int m = 0; m < (k == 0 || k == n - 1 ? 4 : 2); ++m) file->real(40, spline.breaks[k]);
+  for (int k = 0; k < points; ++k) file->point(10, spline.points.col(k));
 }
 
 void write_line(DxfFile* file, StrokeKind kind, const Vector3d& begin, const Vector3d& end) {
   entity(file, "LINE", kind).subclass("Line").point(10, begin).point(11, end);
 }
 
-void write_entity(DxfFile* file, const Sketch& sketch, int i, double straight) {
+void write_entity(DxfFile* file, const Sketch& sketch, const CurveChain& chain, double straight) {
+  const int i = chain.strokes[0];
   const StrokeKind kind = sketch.strokes[i].kind;
   const ControlPoints c = control_points(sketch, i);
   if (kind == StrokeKind::kLine) {
@@ -215,7 +219,7 @@ void write_entity(DxfFile* file, const Sketch& sketch, int i, double straight) {
     else
       write_elliptic_arc(file, e);
   } else if (kind == StrokeKind::kBezier) {
-    write_spline(file, c);
+    write_spline(file, chain_spline(sketch, chain));
   } else {
     const CircleParameters circle = circle_parameters(sketch, i);
     const double sagitta =
@@ -244,7 +248,7 @@ void write_dxf(std::ostream& out, const Sketch& sketch, const DxfOptions& option
   write_blocks(&file);
   file.section("ENTITIES");
   const double straight = kStraight * largest_extent(sketch);
-  for (int i = 0; i < sketch.size(); ++i) write_entity(&file, sketch, i, straight);
+  for (const CurveChain& chain : curve_chains(sketch)) write_entity(&file, sketch, chain, straight);
   file.text(0, "ENDSEC");
   write_objects(&file);
   file.text(0, "EOF");

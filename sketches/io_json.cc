@@ -6,6 +6,7 @@
 
 #include "datasets/errors.h"
 #include "sketches/conic.h"
+#include "sketches/curve_chain.h"
 #include "sketches/io.h"
 
 namespace sketchsplat {
@@ -46,15 +47,23 @@ void add_derived(const Sketch& sketch, int i, Json* stroke) {
   }
 }
 
-Json json_of(const Sketch& sketch, int i) {
+// `node`: the index in the file of every node.
+Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<int>& node) {
+  const int i = chain.strokes[0];
   const Stroke& s = sketch.strokes[i];
-  const Evidence& e = sketch.evidence[i];
+  const Evidence e = chain_evidence(sketch, chain);
   Json out;
   out["kind"] = kind_name(s.kind);
-  out["nodes"] = is_closed(s.kind) ? Json::array() : Json{s.begin, s.end};
+  out["nodes"] = is_closed(s.kind) ? Json::array() : Json{node[chain.begin], node[chain.end]};
   out["handles"] = Json::array();
-  for (int h = 0; h < num_handles(s.kind); ++h)
-    out["handles"].push_back(json_of(Eigen::Vector3d(sketch.handles.col(s.handle + h))));
+  if (chain.strokes.size() > 1) {
+    const Eigen::Matrix3Xd p = chain_points(sketch, chain);
+    for (int k = 1; k + 1 < p.cols(); ++k)
+      out["handles"].push_back(json_of(Eigen::Vector3d(p.col(k))));
+  } else {
+    for (int h = 0; h < num_handles(s.kind); ++h)
+      out["handles"].push_back(json_of(Eigen::Vector3d(sketch.handles.col(s.handle + h))));
+  }
   add_derived(sketch, i, &out);
   out["opacity"] = e.opacity;
   out["support_views"] = e.support_views;
@@ -123,7 +132,8 @@ class Reader {
   std::string path_;
 };
 
-void read_stroke(const Reader& reader, const Json& j, const std::string& where, Sketch* sketch) {
+void read_stroke(const Reader& reader, const Json& j, const std::string& where, int num_nodes,
+                 Sketch* sketch) {
   const Json& name = reader.member(j, "kind", where);
   StrokeKind kind;
   if (!name.is_string() || !parse_kind(name.get<std::string>(), &kind))
@@ -136,14 +146,15 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
   int ends[2] = {-1, -1};
   for (size_t k = 0; k < nodes.size(); ++k) {
     ends[k] = reader.integer(nodes[k], "an index of a node in " + where);
-    if (ends[k] >= sketch->nodes.cols())
-      reader.fail(
-          "an index of a node in " + where + " below " + std::to_string(sketch->nodes.cols()),
-          std::to_string(ends[k]));
+    if (ends[k] >= num_nodes)
+      reader.fail("an index of a node in " + where + " below " + std::to_string(num_nodes),
+                  std::to_string(ends[k]));
   }
   const Json& handles = reader.array(j, "handles", where);
-  if (int(handles.size()) != num_handles(kind))
-    reader.fail(std::to_string(num_handles(kind)) + " handles in " + where,
+  const bool spans = kind == StrokeKind::kBezier && handles.size() % 3 == 2;
+  if (!spans && int(handles.size()) != num_handles(kind))
+    reader.fail(std::to_string(num_handles(kind)) + " handles in " + where +
+                    (kind == StrokeKind::kBezier ? ", or 3 n - 1 for n cubics" : ""),
                 std::to_string(handles.size()));
   std::vector<Eigen::Vector3d> points;
   for (const Json& h : handles) points.push_back(reader.point(h, "a handle in " + where));
@@ -164,6 +175,13 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
     }
   if (j.contains("determined"))
     e.determined = reader.integer(j["determined"], "a count as determined in " + where);
+  // Each third point of a chain of cubics is a joint.
+  while (spans && points.size() > 2) {
+    const int joint = sketch->add_node(points[2]);
+    sketch->add_stroke(kind, ends[0], joint, {points[0], points[1]}, e);
+    ends[0] = joint;
+    points.erase(points.begin(), points.begin() + 3);
+  }
   sketch->add_stroke(kind, ends[0], ends[1], points, e);
 }
 
@@ -178,10 +196,16 @@ void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::strin
       if (key != "format_version" && key != "nodes" && key != "strokes")
         out << "  " << Json(key).dump() << ": " << value.dump() << ",\n";
   }
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  const std::vector<bool> inner = inner_joints(sketch, chains);
   std::vector<Json> nodes, strokes;
-  for (int i = 0; i < sketch.nodes.cols(); ++i)
+  std::vector<int> node(inner.size(), -1);
+  for (size_t i = 0; i < inner.size(); ++i) {
+    if (inner[i]) continue;
+    node[i] = int(nodes.size());
     nodes.push_back(json_of(Eigen::Vector3d(sketch.nodes.col(i))));
-  for (int i = 0; i < sketch.size(); ++i) strokes.push_back(json_of(sketch, i));
+  }
+  for (const CurveChain& chain : chains) strokes.push_back(json_of(sketch, chain, node));
   write_array(out, "nodes", nodes);
   out << ",\n";
   write_array(out, "strokes", strokes);
@@ -206,7 +230,7 @@ Sketch read_sketch_json(std::istream& in, const std::string& path) {
     sketch.nodes.col(i) = reader.point(nodes[i], "node " + std::to_string(i));
   const Json& strokes = reader.array(j, "strokes", "the file");
   for (size_t i = 0; i < strokes.size(); ++i)
-    read_stroke(reader, strokes[i], "stroke " + std::to_string(i), &sketch);
+    read_stroke(reader, strokes[i], "stroke " + std::to_string(i), int(nodes.size()), &sketch);
   const std::vector<std::string> complaints = validate(sketch);
   if (!complaints.empty())
     reader.fail("a sound sketch",

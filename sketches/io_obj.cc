@@ -6,6 +6,7 @@
 
 #include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "sketches/curve_chain.h"
 #include "sketches/io.h"
 #include "sketches/io_number.h"
 
@@ -53,6 +54,19 @@ void write_vertex(std::ostream& out, const Eigen::Vector3d& p) {
   out << "v " << shortest(p.x()) << " " << shortest(p.y()) << " " << shortest(p.z()) << "\n";
 }
 
+// `inner`: the stroke's first vertex that is no node.
+void write_segments(std::ostream& out, const Stroke& stroke, int chords, int inner) {
+  const bool closed = is_closed(stroke.kind);
+  const int first = closed ? inner++ : stroke.begin + 1;
+  int from = first;
+  for (int i = 1; i <= chords; ++i) {
+    const int last = closed ? first : stroke.end + 1;
+    const int to = i < chords ? inner++ : last;
+    out << "l " << from << " " << to << "\n";
+    from = to;
+  }
+}
+
 }  // namespace
 
 void write_obj(std::ostream& out, const Sketch& sketch, double deflection, double scale) {
@@ -69,19 +83,16 @@ void write_obj(std::ostream& out, const Sketch& sketch, double deflection, doubl
       write_vertex(out, scale * p);
     }
   }
-  int inner = int(sketch.nodes.cols()) + 1;  // OBJ counts from 1
+  std::vector<int> inner;  // first vertex of every stroke that is no node; OBJ counts from 1
+  int next = int(sketch.nodes.cols()) + 1;
   for (int s = 0; s < sketch.size(); ++s) {
-    const Stroke& stroke = sketch.strokes[s];
-    const bool closed = is_closed(stroke.kind);
-    const int first = closed ? inner++ : stroke.begin + 1;
-    out << "o " << kind_name(stroke.kind) << "_" << s << "\n";
-    int from = first;
-    for (int i = 1; i <= chords[s]; ++i) {
-      const int last = closed ? first : stroke.end + 1;
-      const int to = i < chords[s] ? inner++ : last;
-      out << "l " << from << " " << to << "\n";
-      from = to;
-    }
+    inner.push_back(next);
+    next += chords[s] - (is_closed(sketch.strokes[s].kind) ? 0 : 1);
+  }
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  for (size_t c = 0; c < chains.size(); ++c) {
+    out << "o " << kind_name(sketch.strokes[chains[c].strokes[0]].kind) << "_" << c << "\n";
+    for (int s : chains[c].strokes) write_segments(out, sketch.strokes[s], chords[s], inner[s]);
   }
 }
 

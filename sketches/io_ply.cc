@@ -3,7 +3,7 @@
 #include <cstring>
 #include <ostream>
 
-#include "sketches/curve.h"
+#include "sketches/curve_chain.h"
 #include "sketches/io.h"
 
 namespace sketchsplat {
@@ -25,13 +25,15 @@ void append(float x, std::string* bytes) {
 void write_edge_points(std::ostream& out, const Sketch& sketch, double spacing) {
   std::string bytes;
   int count = 0;
-  for (int s = 0; s < sketch.size(); ++s) {
-    const Eigen::Matrix3Xd points = sample_stroke(sketch, s, spacing);
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const Eigen::Matrix3Xd points = sample_chain(sketch, chains[c], spacing);
     // The last point of a closed curve is its first.
-    const int n = int(points.cols()) - (is_closed(sketch.strokes[s].kind) ? 1 : 0);
+    const int n =
+        int(points.cols()) - (is_closed(sketch.strokes[chains[c].strokes[0]].kind) ? 1 : 0);
     for (int i = 0; i < n; ++i) {
       for (int k = 0; k < 3; ++k) append(float(points(k, i)), &bytes);
-      append(uint32_t(s), &bytes);
+      append(uint32_t(c), &bytes);
     }
     count += n;
   }

@@ -30,15 +30,16 @@ constexpr const char* kLayer[kNumKinds + 1] = {"line",   "arc",          "circle
 // A share of the sketch's extent that no CAD program looks at: arcs flatter than it are lines.
 constexpr double kUncertainty = 1e-7;
 
-// EDGE_CURVE of a stroke; a closed one gets a vertex of its own and uses it twice.
-int write_edge(const Sketch& sketch, int s, const std::vector<int>& vertex, double uncertainty,
-               StepFile* file) {
+// EDGE_CURVE of a curve; a closed one gets a vertex of its own and uses it twice.
+int write_edge(const Sketch& sketch, const CurveChain& chain, int index,
+               const std::vector<int>& vertex, double uncertainty, StepFile* file) {
+  const int s = chain.strokes[0];
   const Stroke& stroke = sketch.strokes[s];
   const ControlPoints c = control_points(sketch, s);
   int curve = 0, begin = 0, end = 0;
   if (!is_closed(stroke.kind)) {
-    begin = vertex[stroke.begin];
-    end = vertex[stroke.end];
+    begin = vertex[chain.begin];
+    end = vertex[chain.end];
   }
   switch (stroke.kind) {
     case StrokeKind::kLine:
@@ -66,7 +67,7 @@ int write_edge(const Sketch& sketch, int s, const std::vector<int>& vertex, doub
       break;
     }
     case StrokeKind::kBezier:
-      curve = file->cubic(c);
+      curve = file->spline(chain_spline(sketch, chain));
       break;
     case StrokeKind::kEllipticArc: {
       const EllipticArcParameters e = elliptic_arc_parameters(c);
@@ -77,7 +78,7 @@ int write_edge(const Sketch& sketch, int s, const std::vector<int>& vertex, doub
       break;
     }
   }
-  const std::string name = std::string(kind_name(stroke.kind)) + "_" + std::to_string(s);
+  const std::string name = std::string(kind_name(stroke.kind)) + "_" + std::to_string(index);
   return file->add("EDGE_CURVE(" + quoted(name) + "," + reference(begin) + "," + reference(end) +
                    "," + reference(curve) + ",.T.)");
 }
@@ -190,6 +191,10 @@ void write_presentation(StepFile* file, const Sketch& sketch, const std::vector<
                         const std::vector<int>& faces, int context) {
   std::vector<int> of_kind[kNumKinds + 1], items;
   for (int i = 0; i < sketch.size(); ++i) of_kind[int(sketch.strokes[i].kind)].push_back(edges[i]);
+  for (std::vector<int>& ids : of_kind) {  // the strokes of a chain have one edge
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  }
   of_kind[kNumKinds] = faces;
   const int font = file->add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')");
   for (int kind = 0; kind <= kNumKinds; ++kind) {
@@ -205,27 +210,41 @@ void write_presentation(StepFile* file, const Sketch& sketch, const std::vector<
             reference(context) + ")");
 }
 
-std::vector<int> write_edges(StepFile* file, const Sketch& sketch, double uncertainty) {
-  std::vector<int> vertex, edges;
-  for (int i = 0; i < sketch.nodes.cols(); ++i) vertex.push_back(file->vertex(sketch.nodes.col(i)));
-  for (int i = 0; i < sketch.size(); ++i)
-    edges.push_back(write_edge(sketch, i, vertex, uncertainty, file));
+std::vector<bool> bounding(const Sketch& sketch, const std::vector<PlanarFace>& faces) {
+  std::vector<bool> bounds(sketch.size());
+  for (const PlanarFace& face : faces) {
+    for (const LoopStroke& s : face.outer) bounds[s.stroke] = true;
+    for (const Loop& hole : face.holes)
+      for (const LoopStroke& s : hole) bounds[s.stroke] = true;
+  }
+  return bounds;
+}
+
+// The edge of every stroke; those of a smooth chain share one. Faces refer to strokes, so theirs
+// stay apart.
+std::vector<int> write_edges(StepFile* file, const Sketch& sketch, const std::vector<bool>& alone,
+                             double uncertainty) {
+  const std::vector<CurveChain> chains = curve_chains(sketch, alone);
+  const std::vector<bool> inner = inner_joints(sketch, chains);
+  std::vector<int> vertex(inner.size(), 0), edges(sketch.size());
+  for (size_t i = 0; i < inner.size(); ++i)
+    if (!inner[i]) vertex[i] = file->vertex(sketch.nodes.col(i));
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const int edge = write_edge(sketch, chains[c], int(c), vertex, uncertainty, file);
+    for (int s : chains[c].strokes) edges[s] = edge;
+  }
   return edges;
 }
 
 // The edges that bound no face, one CONNECTED_EDGE_SET a chain; 0 if there is none.
 int write_wireframe(StepFile* file, const Sketch& sketch, const std::vector<int>& edges,
-                    const std::vector<PlanarFace>& faces, const std::string& name) {
-  std::vector<bool> free(sketch.size(), true);
-  for (const PlanarFace& face : faces) {
-    for (const LoopStroke& s : face.outer) free[s.stroke] = false;
-    for (const Loop& hole : face.holes)
-      for (const LoopStroke& s : hole) free[s.stroke] = false;
-  }
+                    std::vector<bool> bounds, const std::string& name) {
+  bounds.flip();
   std::vector<int> sets;
-  for (const std::vector<int>& chain : chains(sketch, free)) {
+  for (const std::vector<int>& chain : chains(sketch, bounds)) {
     std::vector<int> ids;
-    for (int i : chain) ids.push_back(edges[i]);
+    for (int i : chain)
+      if (std::find(ids.begin(), ids.end(), edges[i]) == ids.end()) ids.push_back(edges[i]);
     sets.push_back(file->add("CONNECTED_EDGE_SET(''," + list(ids) + ")"));
   }
   if (sets.empty()) return 0;
@@ -266,13 +285,14 @@ void write_step(std::ostream& out, const Sketch& sketch, const StepOptions& opti
   StepFile file(out, options.scale);
   const int context = write_context(&file, options.unit, uncertainty * options.scale);
   const int origin = file.placement({0, 0, 0}, {0, 0, 1}, {1, 0, 0});
-  const std::vector<int> edges = write_edges(&file, sketch, uncertainty);
+  const std::vector<bool> bounds = bounding(sketch, options.faces);
+  const std::vector<int> edges = write_edges(&file, sketch, bounds, uncertainty);
   std::vector<int> faces;
   const int surfaces =
       options.faces.empty()
           ? 0
           : step::write_surface_model(&file, options.faces, edges, options.name, &faces);
-  const int wireframe = write_wireframe(&file, sketch, edges, options.faces, options.name);
+  const int wireframe = write_wireframe(&file, sketch, edges, bounds, options.name);
   write_product(&file, options.name,
                 write_shape(&file, options.name, origin, wireframe, surfaces, context));
   if (sketch.size() > 0) write_presentation(&file, sketch, edges, faces, context);

@@ -95,11 +95,18 @@ int StepFile::ellipse(const Vector3d& centre, const EllipseAxes& axes) {
              real(scale_ * axes.minor.norm()) + ")");
 }
 
-int StepFile::cubic(const ControlPoints& c) {
+int StepFile::spline(const Spline& spline) {
   std::vector<int> points;
-  for (int k = 0; k < 4; ++k) points.push_back(point(c.p[k]));
-  return add("B_SPLINE_CURVE_WITH_KNOTS('',3," + list(points) +
-             ",.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),.PIECEWISE_BEZIER_KNOTS.)");
+  for (int k = 0; k < spline.points.cols(); ++k) points.push_back(point(spline.points.col(k)));
+  std::string multiplicities, knots;
+  const int n = int(spline.breaks.size());
+  for (int k = 0; k < n; ++k) {
+    multiplicities += std::string(k ? "," : "") + (k == 0 || k == n - 1 ? "4" : "2");
+    knots += (k ? "," : "") + real(spline.breaks[k]);
+  }
+  return add("B_SPLINE_CURVE_WITH_KNOTS('',3," + list(points) + ",.UNSPECIFIED.,.F.,.F.,(" +
+             multiplicities + "),(" + knots +
+             (n == 2 ? "),.PIECEWISE_BEZIER_KNOTS.)" : "),.UNSPECIFIED.)"));
 }
 
 Vector3d plain_direction(const Vector3d& normal) {

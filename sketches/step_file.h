@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sketches/conic.h"
+#include "sketches/curve_chain.h"
 #include "sketches/face.h"
 #include "sketches/sketch.h"
 
@@ -35,7 +36,7 @@ class StepFile {
   int circle(const Eigen::Vector3d& centre, const Eigen::Vector3d& normal, const Eigen::Vector3d& x,
              double radius);
   int ellipse(const Eigen::Vector3d& centre, const EllipseAxes& axes);
-  int cubic(const ControlPoints& c);
+  int spline(const Spline& spline);
 
  private:
   std::ostream& out_;

@@ -103,6 +103,22 @@ TEST(ReadPrediction, ReadsASketch) {
   EXPECT_EQ(p.strokes.size(), 2u) << "the pieces of the circle are one stroke";
 }
 
+TEST(ReadPrediction, TakesASmoothChainOfCubicsForOneCurve) {
+  Sketch sketch;
+  const int a = sketch.add_node({0, 0, 0}), b = sketch.add_node({2, 0, 0});
+  const int c = sketch.add_node({4, 1, 0});
+  sketch.add_stroke(StrokeKind::kBezier, a, b, {{0, 1, 0}, {1.5, 0.5, 0}});
+  sketch.add_stroke(StrokeKind::kBezier, b, c, {{2.5, -0.5, 0}, {3, 0, 1}});
+  std::ostringstream text;
+  write_sketch_json(text, sketch);
+  const TempFolder folder;
+  const Prediction p = read_prediction(folder.write("sketch.json", text.str()));
+  EXPECT_EQ(p.curves.size(), 2u);
+  ASSERT_EQ(p.strokes.size(), 1u);
+  EXPECT_EQ(p.strokes[0].rightCols<1>(), sketch.nodes.col(c));
+  EXPECT_EQ(p.facts[0].parameters, 12 + 7) << "the second span begins where and as the first ends";
+}
+
 TEST(ReadPrediction, TellsWhatIsWrong) {
   const TempFolder folder;
   const auto broken = [&](const std::string& text) {

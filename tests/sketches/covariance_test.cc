@@ -114,8 +114,8 @@ TEST(Covariance, AnEdgelThatManySamplesFindErrsOnce) {
   std::vector<Sighting> once, often;
   for (int v = 0; v < 8; ++v)
     for (int i = 0; i < coarse.size(); ++i)
-      once.push_back({i, v, i, 100 * Vector3d(0, std::cos(2.4 * v), std::sin(2.4 * v)),
-                      error(random)});
+      once.push_back(
+          {i, v, i, 100 * Vector3d(0, std::cos(2.4 * v), std::sin(2.4 * v)), error(random)});
   std::stable_sort(once.begin(), once.end(),
                    [](const Sighting& a, const Sighting& b) { return a.sample < b.sample; });
   for (int k = 0; k < fine.size(); ++k)

@@ -62,4 +62,18 @@ struct Random {
   }
 };
 
+/// Three cubics that go on smoothly, the second stored backwards, and a line from their end.
+inline Sketch smooth_chain() {
+  const Eigen::Vector3d p[4] = {{0, 0, 0}, {2, 0, 0}, {5, 1, 0}, {6, 3, 1}};
+  const Eigen::Vector3d t[4] = {{1, 1, 0}, {2, -1, 0.5}, {1, 1, 1}, {0, 1, 0}};
+  Sketch s;
+  for (const Eigen::Vector3d& q : p) s.add_node(q);
+  s.add_node({6, 3, 4});
+  s.add_stroke(StrokeKind::kBezier, 0, 1, {p[0] + 0.5 * t[0], p[1] - 0.3 * t[1]});
+  s.add_stroke(StrokeKind::kBezier, 2, 1, {p[2] - 1.1 * t[2], p[1] + 0.8 * t[1]});
+  s.add_stroke(StrokeKind::kBezier, 2, 3, {p[2] + 0.7 * t[2], p[3] - 0.4 * t[3]});
+  s.add_stroke(StrokeKind::kLine, 3, 4, {});
+  return s;
+}
+
 }  // namespace sketchsplat

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
@@ -175,6 +176,35 @@ TEST(EdgePoints, ReadByOpenMesh) {
   EXPECT_EQ(mesh.n_vertices(), std::stoul(text.substr(text.find("element vertex ") + 15)));
   const auto first = mesh.point(mesh.vertex_handle(0));
   EXPECT_LT((Vector3d(first[0], first[1], first[2]) - Vector3d(0.1, 0.2, 0.3)).norm(), 1e-6);
+}
+
+TEST(EdgePoints, ASmoothChainHasOneIndexAndNoJointTwice) {
+  std::ostringstream out;
+  write_edge_points(out, smooth_chain(), 0.05);
+  const std::string text = out.str();
+  const size_t body = text.find("end_header\n") + 11;
+  std::vector<int> index;
+  std::vector<Eigen::Vector3f> points;
+  for (size_t at = body; at + 16 <= text.size(); at += 16) {
+    float p[3];
+    int i;
+    std::memcpy(p, text.data() + at, 12), std::memcpy(&i, text.data() + at + 12, 4);
+    points.push_back({p[0], p[1], p[2]}), index.push_back(i);
+  }
+  EXPECT_EQ(*std::max_element(index.begin(), index.end()), 1);
+  for (size_t k = 1; k < points.size(); ++k) {
+    const bool apart = (points[k] - points[k - 1]).norm() > 1e-4f;
+    EXPECT_TRUE(apart || index[k] != index[k - 1]) << k;
+  }
+}
+
+TEST(Obj, ASmoothChainIsOneObject) {
+  std::ostringstream out;
+  write_obj(out, smooth_chain());
+  const std::string text = out.str();
+  EXPECT_THAT(text, testing::HasSubstr("o bezier_0\n"));
+  EXPECT_THAT(text, testing::HasSubstr("o line_1\n"));
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("_2\n")));
 }
 
 TEST(EdgePoints, AreValidWithoutStrokes) {

@@ -8,6 +8,7 @@
 
 #include "datasets/errors.h"
 #include "sketches/curve.h"
+#include "sketches/curve_chain.h"
 #include "sketches/io.h"
 #include "tests/sketches/five_kinds.h"
 
@@ -118,6 +119,26 @@ TEST(SketchJson, KeepsJunctionsWhenHandlesAreOutOfOrder) {
       EXPECT_EQ(control_points(back, i).p[k], control_points(s, i).p[k]);
 }
 
+TEST(SketchJson, ASmoothChainIsOneCurveWhoseJointsAreNoNodes) {
+  const Sketch s = smooth_chain();
+  std::ostringstream out;
+  write_sketch_json(out, s);
+  const auto j = nlohmann::json::parse(out.str());
+  ASSERT_EQ(j["strokes"].size(), 2u);
+  EXPECT_EQ(j["strokes"][0]["kind"], "bezier");
+  EXPECT_EQ(j["strokes"][0]["handles"].size(), 8u);
+  EXPECT_EQ(j["nodes"].size(), 3u);
+  std::istringstream in(out.str());
+  const Sketch back = read_sketch_json(in, "sketch.json");
+  EXPECT_EQ(back.size(), 4);
+  const std::vector<CurveChain> chains = curve_chains(back);
+  ASSERT_EQ(chains.size(), 2u);
+  EXPECT_EQ(chain_points(back, chains[0]), chain_points(s, curve_chains(s)[0]));
+  std::ostringstream again;
+  write_sketch_json(again, back);
+  EXPECT_EQ(again.str(), out.str());
+}
+
 TEST(SketchJson, AddsExtraMembersButNotOverItsOwn) {
   const Sketch s = five_kinds();
   expect_same(read(text_of(s, R"({"nodes": 3, "options": {"rounds": 4}})")), s);
@@ -156,7 +177,7 @@ TEST(SketchJson, NamesTheStrokeThatIsBroken) {
               }),
               HasSubstr("no nodes in stroke 4, found 2"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][2]["handles"].erase(0); }),
-              HasSubstr("2 handles in stroke 2, found 1"));
+              HasSubstr("2 handles in stroke 2, or 3 n - 1 for n cubics, found 1"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][2]["kind"] = "spline"; }),
               HasSubstr("as \"kind\" of stroke 2, found \"spline\""));
   EXPECT_THAT(because([](auto& j) { j["strokes"][2].erase("kind"); }),

@@ -202,6 +202,19 @@ TEST(Step, SharesVerticesAndWritesChainsAsSuch) {
   expect_same_curves(s, shape, 1);
 }
 
+TEST(Step, WritesASmoothChainAsOneSplineOfTheSameLength) {
+  const Sketch s = smooth_chain();
+  const std::string text = step_of(s);
+  const Shape shape = open_step(text);
+  ASSERT_EQ(shape.edges.Extent(), 2);
+  EXPECT_EQ(shape.vertices.Extent(), 3);
+  double sum = 0, length = 0;
+  for (int i = 0; i < 2; ++i) length += length_of(shape.edge(i));
+  for (int i = 0; i < s.size(); ++i) sum += stroke_length(s, i);
+  EXPECT_NEAR(length, sum, 1e-4 * sum);
+  EXPECT_THAT(text, testing::HasSubstr("(4,2,2,4)"));
+}
+
 TEST(Step, KeepsTheCornersOfACubeApart) {
   Sketch s;
   for (int n = 0; n < 8; ++n) s.add_node({double(n & 1), double(n >> 1 & 1), double(n >> 2 & 1)});
