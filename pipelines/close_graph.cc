@@ -130,9 +130,9 @@ void Graph::round_arcs() {
     if (c.straight || c.angle < options_.least_turn * 2 * M_PI) continue;
     const double gap = (2 * M_PI - c.angle) * c.radius;
     const double t1 = 2 * M_PI / c.angle;
-    if (!is_possible(points_between(stroke.kind, control_points(s_, i), 1, t1, gap,
-                                    world_.footprint),
-                     world_, gap, options_))
+    if (!is_possible(
+            points_between(stroke.kind, control_points(s_, i), 1, t1, gap, world_.footprint),
+            world_, gap, options_))
       continue;
     alive_[i] = false;
     add(StrokeKind::kCircle, -1, -1, {c.centre, c.normal * c.radius}, s_.evidence[i]);
@@ -140,15 +140,18 @@ void Graph::round_arcs() {
   }
 }
 
-// Most of an ellipse in one arc, or in two that go on from one another, is all of it.
+// Most of an ellipse, or of a circle, in one arc or in two that go on from one another, is all of
+// it.
 void Graph::round_elliptic_arcs() {
   const std::vector<int> degree = degrees();
   for (int a = 0; a < s_.size(); ++a)
     for (int b = a; b < s_.size(); ++b) {
-      const auto is_elliptic = [&](int i) {
-        return is_open(i) && s_.strokes[i].kind == StrokeKind::kEllipticArc;
+      const auto is_part = [&](int i) {
+        const StrokeKind kind = s_.strokes[i].kind;
+        return is_open(i) &&
+               (kind == StrokeKind::kEllipticArc || (a != b && kind == StrokeKind::kArc));
       };
-      if (!is_elliptic(a) || !is_elliptic(b)) continue;
+      if (!is_part(a) || !is_part(b)) continue;
       const Stroke &sa = s_.strokes[a], &sb = s_.strokes[b];
       if (a == b && (degree[sa.begin] != 1 || degree[sa.end] != 1)) continue;
       // Two must share one node and nobody else any.
@@ -209,9 +212,7 @@ bool Graph::bridge(int a, bool a_end, int b, bool b_end) {
   const Vector3d p = s_.nodes.col(far_a), q = s_.nodes.col(far_b);
   const Vector3d x = s_.nodes.col(near_a), y = s_.nodes.col(near_b);
   const Vector3d axis = (q - p).normalized();
-  const auto aside = [&](const Vector3d& v) {
-    return (v - p - axis.dot(v - p) * axis).norm();
-  };
+  const auto aside = [&](const Vector3d& v) { return (v - p - axis.dot(v - p) * axis).norm(); };
   if (aside(x) > px(options_.bridge_px) || aside(y) > px(options_.bridge_px)) return false;
   const double sx = axis.dot(x - p), sy = axis.dot(y - p), sq = axis.dot(q - p);
   if (!(0 < sx && sx < sy && sy < sq)) return false;
@@ -351,17 +352,20 @@ void Graph::meet(int stroke, bool at_end, const Meeting& m) {
   if (is_closed(other.kind)) return;  // it has no node; the end lies on it
   const double length = stroke_length(s_, m.stroke);
   const double reach = px(options_.reach_px);
-  const bool at_far_end = (s_.nodes.col(other.end) - m.place).norm() <
-                          (s_.nodes.col(other.begin) - m.place).norm();
+  const bool at_far_end =
+      (s_.nodes.col(other.end) - m.place).norm() < (s_.nodes.col(other.begin) - m.place).norm();
   const int node = at_far_end ? other.end : other.begin;
   const bool loose = degrees()[node] == 1;
   const ClosestPoint on = distance_to_stroke(s_, m.stroke, m.place);
   // A loose end follows; one where others meet is not moved by this one.
   const bool beyond = on.t < 1e-6 || on.t > 1 - 1e-6;
-  if (beyond || (s_.nodes.col(node) - m.place).norm() <= (loose ? std::min(1.5 * reach, 0.4 * length)
-                                                         : std::min(reach / 2, length / 6))) {
-    if (loose) move_end(m.stroke, at_far_end, m.place);
-    else move_end(stroke, at_end, s_.nodes.col(node));
+  if (beyond ||
+      (s_.nodes.col(node) - m.place).norm() <=
+          (loose ? std::min(1.5 * reach, 0.4 * length) : std::min(reach / 2, length / 6))) {
+    if (loose)
+      move_end(m.stroke, at_far_end, m.place);
+    else
+      move_end(stroke, at_end, s_.nodes.col(node));
     set_node(stroke, at_end, node);
     return;
   }

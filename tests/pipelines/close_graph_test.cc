@@ -115,6 +115,26 @@ TEST_F(CloseGraph, AnArcOfNearlyACircleIsTheCircleUnlessSomethingEndsThere) {
   EXPECT_EQ(close(s).rounded, 0);
 }
 
+TEST_F(CloseGraph, TwoArcsThatGoOnAroundNearlyACircleAreTheCircle) {
+  const auto on = [&](double deg, double radius) {
+    const double a = deg * M_PI / 180;
+    return Vector3d(0.5 + radius * std::cos(a), 0.5 + radius * std::sin(a), 0.5);
+  };
+  const double last = 360 - 5 * px / 0.2 * 180 / M_PI;
+  for (const double other : {0.2 + 0.3 * px, 0.2 + 40 * px}) {  // radius half-way
+    Sketch t;
+    const int a = t.add_node(on(0, 0.2)), b = t.add_node(on(190, 0.2)),
+              c = t.add_node(on(last, 0.2));
+    t.add_stroke(StrokeKind::kArc, a, b, {on(95, 0.2)});
+    t.add_stroke(StrokeKind::kArc, c, b, {on((190 + last) / 2, other)});
+    const Closed closed = close(t);
+    const bool one = other < 0.2 + px;
+    EXPECT_EQ(closed.rounded, one);
+    ASSERT_EQ(closed.sketch.size(), one ? 1 : 2);
+    EXPECT_EQ(closed.sketch.strokes[0].kind, one ? StrokeKind::kCircle : StrokeKind::kArc);
+  }
+}
+
 // With masks, a gap is closed if no view contradicts; without any, if it is narrow.
 TEST_F(CloseGraph, ArcsOfNearlyAnEllipseAreTheEllipseUnlessSomethingEndsThere) {
   const Vector3d centre(0.5, 0.5, 0.5), p(0.3, 0, 0.1), q(0, 0.15, 0);
