@@ -115,6 +115,7 @@ double RegularityFinder::own_sigma(const Relation& relation) {
 // exceed the price of a parameter, lest chance agreement pays.
 Trial RegularityFinder::weigh(std::vector<Relation>* relations, double range_px, double naming) {
   Trial trial;
+  if (exhausted()) return trial;
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> residual;
   double sigma = 0;
@@ -131,6 +132,7 @@ Trial RegularityFinder::weigh(std::vector<Relation>* relations, double range_px,
     }
   }
   const int k = int(residual.size());
+  work_ += double(k) * (30 * gaussian_.size() + (1 + k) * gaussian_.taken());
   trial.rows.resize(k, gaussian_.size());
   trial.rows.setFromTriplets(entries.begin(), entries.end());
   trial.residual = Eigen::Map<VectorXd>(residual.data(), k);
@@ -150,6 +152,8 @@ Trial RegularityFinder::weigh(std::vector<Relation>* relations, double range_px,
 }
 
 void RegularityFinder::take(const std::vector<Relation>& relations, const Trial& trial, bool pays) {
+  if (exhausted()) return;
+  work_ += double(trial.rows.rows()) * gaussian_.size() * (30 + gaussian_.taken());
   apply(gaussian_.observe(trial.rows, trial.residual, 1));
   for (const Relation& r : relations) {
     relations_.list.push_back(r);

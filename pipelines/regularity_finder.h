@@ -45,7 +45,9 @@ class RegularityFinder {
   /// of these five.
   void find(int stages);
   const Sketch& sketch() const { return s_; }  ///< moved by what was taken, in linear steps
-  double gain() const { return gain_; }        ///< [nat] of parameters that need not be stated
+  /// Was there more to do than most_work allows? Then nothing that was found counts.
+  bool exhausted() const { return work_ > options_.most_work; }
+  double gain() const { return gain_; }  ///< [nat] of parameters that need not be stated
   Relations kept() const;
   std::vector<Regularity> regularities() const;
 
@@ -85,6 +87,7 @@ class RegularityFinder {
   int points_;
   double extent_;
   double gain_ = 0;
+  double work_ = 0;
   std::vector<Direction> directions_;
 };
 

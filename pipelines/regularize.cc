@@ -74,6 +74,7 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
     RegularityFinder finder(sketch, all, footprint, options);
     if (!finder.ok()) return out;
     finder.find(stages);
+    if (finder.exhausted()) continue;
     Relations relations = finder.kept();
     if (relations.list.empty()) return out;
     const Samples linear = evaluate_samples(finder.sketch(), seen.layout);

@@ -10,9 +10,12 @@ namespace sketchsplat {
 
 struct RegularizeOptions {
   bool on = true;
-  double price = 3;         ///< [nat] of a parameter at the most
-  double sigma_px = 0.15;   ///< [px] least standard deviation of what all views say of a place
-  double soft_px = 0.05;    ///< [px] standard deviation of a relation at the most
+  double price = 3;        ///< [nat] of a parameter at the most
+  double sigma_px = 0.15;  ///< [px] least standard deviation of what all views say of a place
+  double soft_px = 0.05;   ///< [px] standard deviation of a relation at the most
+  /// Multiplications that finding may cost, about: hundreds of strokes that have nothing in common
+  /// would cost minutes. Beyond it, fewer kinds of relations are looked for, or none.
+  double most_work = 3e8;
   double soft_share = 0.1;  ///< and as a share of that of the stroke itself
 };
 

@@ -19,6 +19,8 @@ class Gaussian {
   bool ok() const { return factor_.info() == Eigen::Success; }
   int size() const { return first_ + int(added_.size()); }
 
+  int taken() const { return count_; }  ///< observations so far
+
   /// information^-1 b, of the distribution at first; b: n.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const { return factor_.solve(b); }
 

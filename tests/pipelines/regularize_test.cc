@@ -210,6 +210,26 @@ TEST(Regularize, WhatWasTakenFirstStillHoldsAfterWhatWasTakenLast) {
         << relation_name(r.kind) << " of stroke " << r.stroke;
 }
 
+// It ends after so much work, whatever there is to find, and what was half found does not count.
+TEST(Regularize, WorkHasABoundBeyondWhichKindsAreLeftOut) {
+  const Sketch truth = box();
+  const EdgeWorld world = noisy_world(truth, 8, 1);
+  Observation last;
+  const Sketch free = polish(truth, world, {}, &last);
+  RegularizeOptions options;
+  options.most_work = 0;
+  const Regularized none = regularize(free, last, world.footprint, options);
+  EXPECT_TRUE(none.kept.empty());
+  EXPECT_EQ(none.sketch.nodes, free.nodes);
+  size_t fewer = 0;
+  for (options.most_work = 1e3; options.most_work < 1e7; options.most_work *= 2) {
+    const Regularized some = regularize(free, last, world.footprint, options);
+    EXPECT_GE(some.kept.size(), fewer) << options.most_work;
+    fewer = some.kept.size();
+  }
+  EXPECT_EQ(fewer, regularize(free, last, world.footprint, {}).kept.size());
+}
+
 TEST(Regularize, NothingStaysNothing) {
   const Regularized r = regularize(Sketch(), Observation(), 1, {});
   EXPECT_EQ(r.sketch.size(), 0);
