@@ -218,24 +218,33 @@ class Rebuilder {
   }
   void describe(const Chain& chain, const std::vector<RunPiece>& pieces) {
     const int n = int(pieces.size());
-    if (n == 1 && is_closed(pieces[0].fit.kind)) {
-      out.add_stroke(pieces[0].fit.kind, -1, -1, pieces[0].fit.handles);
-      return;
-    }
-    std::vector<int> joint(n + 1);
+    const auto is_open = [&](int k) { return !is_closed(pieces[k].fit.kind); };
     const Link &head = chain.links.front(), &tail = chain.links.back();
     const Stroke &a = from_.strokes[head.stroke], &z = from_.strokes[tail.stroke];
-    if (!chain.closed) {
-      joint[0] = node(head.backward ? a.end : a.begin);
-      joint[n] = node(tail.backward ? z.begin : z.end);
+    // Joint k lies before piece k. A closed piece has no ends.
+    std::vector<int> joints(n, -1);
+    const auto joint = [&](int k) {
+      if (!chain.closed && k == 0) return node(head.backward ? a.end : a.begin);
+      if (!chain.closed && k == n) return node(tail.backward ? z.begin : z.end);
+      int& made = joints[k % n];
+      if (made >= 0) return made;
+      const RunFit &before = pieces[(k + n - 1) % n].fit, &after = pieces[k % n].fit;
+      const bool both = !is_closed(before.kind) && !is_closed(after.kind);
+      made = out.add_node(both                     ? Vector3d(0.5 * (before.end + after.begin))
+                          : is_closed(before.kind) ? after.begin
+                                                   : before.end);
+      return made;
+    };
+    for (int k = 0; k < n; ++k) {
+      const RunFit& fit = pieces[k].fit;
+      if (!is_open(k)) {
+        out.add_stroke(fit.kind, -1, -1, fit.handles);
+        continue;
+      }
+      const int begin = joint(k), end = joint(k + 1);
+      out.add_stroke(fit.kind, begin, end,
+                     handles_between(fit, out.nodes.col(begin), out.nodes.col(end)));
     }
-    for (int k = chain.closed ? 0 : 1; k < n; ++k)
-      joint[k] = out.add_node(0.5 * (pieces[(k + n - 1) % n].fit.end + pieces[k].fit.begin));
-    if (chain.closed) joint[n] = joint[0];
-    for (int k = 0; k < n; ++k)
-      out.add_stroke(
-          pieces[k].fit.kind, joint[k], joint[k + 1],
-          handles_between(pieces[k].fit, out.nodes.col(joint[k]), out.nodes.col(joint[k + 1])));
   }
   Sketch out;
 

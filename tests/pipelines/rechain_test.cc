@@ -122,6 +122,30 @@ TEST(Rechain, CubicsOverAnArcOfAnEllipseAreThatArc) {
   EXPECT_LT(farthest(out.sketch, 0, {polyline_of(truth, 0)}), 0.3 * 3.0 / 500);
 }
 
+TEST(Rechain, ACircleThatALineLeavesHasNoNodes) {
+  const auto on = [](double deg) {
+    const double a = deg * M_PI / 180;
+    return Vector3d(0.5 + 0.2 * std::cos(a), 0.4 + 0.2 * std::sin(a), 0.5);
+  };
+  constexpr double kLast = 352;
+  const double a = kLast * M_PI / 180;
+  Sketch s;
+  const int begin = s.add_node(on(0)), middle = s.add_node(on(180)), end = s.add_node(on(kLast));
+  const int tip = s.add_node(on(kLast) + 0.3 * Vector3d(-std::sin(a), std::cos(a), 0));
+  s.add_stroke(StrokeKind::kArc, begin, middle, {on(90)});
+  s.add_stroke(StrokeKind::kArc, middle, end, {on((180 + kLast) / 2)});
+  s.add_stroke(StrokeKind::kLine, end, tip, {});
+  const Rechained out = again(s, world_of(s));
+  EXPECT_EQ(out.changes, 1);
+  EXPECT_TRUE(validate(out.sketch).empty());
+  ASSERT_EQ(out.sketch.size(), 2);
+  EXPECT_EQ(count_of(out.sketch, StrokeKind::kCircle), 1);
+  EXPECT_EQ(count_of(out.sketch, StrokeKind::kLine), 1);
+  EXPECT_EQ(out.sketch.nodes.cols(), 2);
+  const int line = out.sketch.strokes[0].kind == StrokeKind::kLine ? 0 : 1;
+  EXPECT_NEAR(stroke_length(out.sketch, line), 0.3, 0.02);
+}
+
 TEST(Rechain, WhatIsDescribedWellStays) {
   const Sketch truth = rounded_corner();
   const EdgeWorld world = world_of(truth);
