@@ -24,12 +24,25 @@ Eigen::Matrix3d frame_of(const Column& s) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
 }
 
-// Keeps what is neither faint nor unseen nor in `halved`, adds the children.
+// Surfels that become two each.
+struct Halves {
+  std::vector<int> parents;
+  std::vector<Column> children;
+  // A step to either side of where `child` is.
+  void add(int parent, Column child, const Eigen::Vector3d& step) {
+    parents.push_back(parent);
+    child.segment<3>(SurfelSet::kCenter) += step;
+    children.push_back(child);
+    child.segment<3>(SurfelSet::kCenter) -= 2 * step;
+    children.push_back(child);
+  }
+};
+
+// Keeps what is neither faint nor unseen nor halved, adds the halves.
 DensityChange replace(const SurfelSet& set, const Eigen::VectorXd& weight, double min_alpha,
-                      double min_weight, const std::vector<std::pair<int, Column>>& halved,
-                      const std::vector<Column>& children) {
+                      double min_weight, const Halves& halves) {
   std::vector<char> gone(set.size(), 0);
-  for (const auto& parent : halved) gone[parent.first] = 1;
+  for (const int parent : halves.parents) gone[parent] = 1;
   DensityChange change;
   for (int i = 0; i < set.size(); ++i) {
     if (gone[i]) continue;
@@ -38,9 +51,9 @@ DensityChange replace(const SurfelSet& set, const Eigen::VectorXd& weight, doubl
     else
       change.kept.push_back(i);
   }
-  change.split = int(halved.size());
-  change.added.resize(SurfelSet::kRows, children.size());
-  for (size_t c = 0; c < children.size(); ++c) change.added.col(c) = children[c];
+  change.split = int(halves.parents.size());
+  change.added.resize(SurfelSet::kRows, halves.children.size());
+  for (size_t c = 0; c < halves.children.size(); ++c) change.added.col(c) = halves.children[c];
   return change;
 }
 
@@ -80,8 +93,7 @@ Eigen::MatrixXd SurfelSet::gradient(const SurfelCloud& by_cloud,
   return g;
 }
 
-SurfelCloud facing_surfels(const SurfelCloud& cloud, const View& view,
-                           std::vector<int>* indices) {
+SurfelCloud facing_surfels(const SurfelCloud& cloud, const View& view, std::vector<int>* indices) {
   constexpr double kGrazing = -0.1;  // cosine; contours are made of what is seen edge-on
   const Eigen::Vector3d eye = view.center_in_world();
   indices->clear();
@@ -100,8 +112,7 @@ SurfelCloud facing_surfels(const SurfelCloud& cloud, const View& view,
   return out;
 }
 
-SurfelGradient spread_gradient(const SurfelGradient& part, const std::vector<int>& indices,
-                               int n) {
+SurfelGradient spread_gradient(const SurfelGradient& part, const std::vector<int>& indices, int n) {
   SurfelGradient out = SurfelGradient::zero(n);
   for (size_t k = 0; k < indices.size(); ++k) {
     const int i = indices[k];
@@ -127,21 +138,16 @@ DensityChange steep_split(const SurfelSet& set, const Eigen::Matrix3Xd& splittin
     steepness[i] = -eigen.eigenvalues()[0];
     axis.col(i) = eigen.eigenvectors().col(0);
   }
-  std::vector<std::pair<int, Column>> halved;
-  std::vector<Column> children;
+  Halves halves;
   for (const int i : highest(steepness, most)) {
     Column child = set.values.col(i);
     const Eigen::Vector2d scale = child.segment<2>(SurfelSet::kLogScale).array().exp();
     const Eigen::Vector3d step =
         frame_of(child).leftCols<2>() * (0.5 * scale.cwiseProduct(axis.col(i)));
     child[SurfelSet::kOpacity] = logit_of(alpha_of(child[SurfelSet::kOpacity]) / 2);
-    halved.push_back({i, child});
-    child.segment<3>(SurfelSet::kCenter) += step;
-    children.push_back(child);
-    child.segment<3>(SurfelSet::kCenter) -= 2 * step;
-    children.push_back(child);
+    halves.add(i, child, step);
   }
-  return replace(set, weight, min_alpha, min_weight, halved, children);
+  return replace(set, weight, min_alpha, min_weight, halves);
 }
 
 DensityChange clone_split(const SurfelSet& set, const Eigen::Matrix2Xd& pull,
@@ -150,21 +156,16 @@ DensityChange clone_split(const SurfelSet& set, const Eigen::Matrix2Xd& pull,
   Eigen::VectorXd strength = pull.colwise().norm();
   for (int i = 0; i < set.size(); ++i)
     if (is_faint(set, i, weight, min_alpha, min_weight)) strength[i] = 0;
-  std::vector<std::pair<int, Column>> halved;
-  std::vector<Column> children;
+  Halves halves;
   for (const int i : highest(strength, most)) {
     Column child = set.values.col(i);
     const int longer = child[SurfelSet::kLogScale] >= child[SurfelSet::kLogScale + 1] ? 0 : 1;
     const Eigen::Vector3d step =
         0.8 * std::exp(child[SurfelSet::kLogScale + longer]) * frame_of(child).col(longer);
     child.segment<2>(SurfelSet::kLogScale).array() -= std::log(1.6);
-    halved.push_back({i, child});
-    child.segment<3>(SurfelSet::kCenter) += step;
-    children.push_back(child);
-    child.segment<3>(SurfelSet::kCenter) -= 2 * step;
-    children.push_back(child);
+    halves.add(i, child, step);
   }
-  return replace(set, weight, min_alpha, min_weight, halved, children);
+  return replace(set, weight, min_alpha, min_weight, halves);
 }
 
 std::vector<std::pair<int, int>> neighbour_pairs(const SurfelSet& set, int count, double reach,
@@ -225,8 +226,8 @@ DensityChange merge_pairs(const SurfelSet& set, const std::vector<std::pair<int,
       for (int m = 0; m < 2; ++m) {
         double along = std::pow(frame.col(m).dot(away), 2);
         for (int o = 0; o < 2; ++o)
-          along += std::exp(2 * s[SurfelSet::kLogScale + o]) *
-                   std::pow(frame.col(m).dot(own.col(o)), 2);
+          along +=
+              std::exp(2 * s[SurfelSet::kLogScale + o]) * std::pow(frame.col(m).dot(own.col(o)), 2);
         moment[m] += share * along;
       }
     }
