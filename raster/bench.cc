@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // raster_bench: time of one view, forward and backward, on the load of a typical scene: 3,000
 // splats every 2 px along random segments in 800 x 800 pixels. Prints one number per line.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <random>
 
+#include "raster/bench_time.h"
 #include "raster/reference.h"
 #include "raster/render.h"
 
@@ -40,18 +39,6 @@ Splats bench_splats(int count) {
     s.opacity[i] = 1;
   }
   return s;
-}
-
-// Best of `repeats`, in milliseconds: the least disturbed one.
-double milliseconds(int repeats, const std::function<void()>& work) {
-  double best = 1e300;
-  for (int i = 0; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-    best = std::min(best, time.count());
-  }
-  return best;
 }
 
 double covered_pixels(const std::vector<Footprint>& footprints) {

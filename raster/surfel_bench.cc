@@ -4,12 +4,11 @@
 // by the near one. Prints one number per line.
 #include <omp.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <random>
 
+#include "raster/bench_time.h"
 #include "raster/surfel.h"
 
 namespace sketchsplat {
@@ -56,18 +55,6 @@ Image<std::uint8_t> bench_mask() {
     }
   }
   return mask;
-}
-
-// Best of `repeats`, in milliseconds: the least disturbed one.
-double milliseconds(int repeats, const std::function<void()>& work) {
-  double best = 1e300;
-  for (int i = 0; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-    best = std::min(best, time.count());
-  }
-  return best;
 }
 
 void run(const char* name, SurfelKernel kernel, int threads) {
