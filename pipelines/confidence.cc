@@ -54,9 +54,7 @@ std::vector<StrokeFeatures> stroke_features(const Sketch& sketch, const EdgeWorl
   const double strength = typical(observation, &StrokeStats::strength);
   const double rms = typical(observation, &StrokeStats::rms_px);
   const double extent = largest_extent(sketch);
-  std::vector<int> degree(sketch.nodes.cols());
-  for (const Stroke& s : sketch.strokes)
-    if (!is_closed(s.kind)) ++degree[s.begin], ++degree[s.end];
+  const std::vector<int> degree = node_degrees(sketch);
   std::vector<StrokeFeatures> out(sketch.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < sketch.size(); ++i) {

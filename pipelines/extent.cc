@@ -66,13 +66,6 @@ int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int
   return last_good;
 }
 
-std::vector<int> node_degrees(const Sketch& sketch) {
-  std::vector<int> degree(sketch.nodes.cols());
-  for (const Stroke& s : sketch.strokes)
-    if (!is_closed(s.kind)) ++degree[s.begin], ++degree[s.end];
-  return degree;
-}
-
 // How far either end may be moved outwards, as a share of the length: cubics do not say how they go
 // on, and an elliptic arc must not close up.
 double most_growth(const Sketch& sketch, int stroke) {

@@ -23,11 +23,12 @@ struct Implied {
 class Proposer {
  public:
   Proposer(const Sketch& sketch, const EdgeWorld& world, const ProposeOptions& options)
-      : s_(sketch), world_(world), options_(options), lines_(sketch.nodes.cols()),
-        degree_(sketch.nodes.cols()) {
+      : s_(sketch),
+        world_(world),
+        options_(options),
+        lines_(sketch.nodes.cols()),
+        degree_(node_degrees(sketch)) {
     for (const Stroke& stroke : s_.strokes) {
-      if (is_closed(stroke.kind)) continue;
-      ++degree_[stroke.begin], ++degree_[stroke.end];
       if (stroke.kind != StrokeKind::kLine) continue;
       lines_[stroke.begin].push_back(stroke.end);
       lines_[stroke.end].push_back(stroke.begin);

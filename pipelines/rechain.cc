@@ -38,9 +38,7 @@ struct End {
 
 // Ends 2 s and 2 s + 1 are the begin and the end of stroke s.
 std::vector<End> ends_of(const Sketch& sketch) {
-  std::vector<int> degree(sketch.nodes.cols());
-  for (const Stroke& s : sketch.strokes)
-    if (!is_closed(s.kind)) ++degree[s.begin], ++degree[s.end];
+  const std::vector<int> degree = node_degrees(sketch);
   std::vector<End> ends(2 * sketch.size());
   for (int s = 0; s < sketch.size(); ++s) {
     const Stroke& stroke = sketch.strokes[s];
@@ -72,9 +70,7 @@ double continuation(const End& x, const End& y, const std::vector<int>& degree, 
 // The end that continues each end; -1 if none does, or if the choice is not mutual.
 std::vector<int> partners(const Sketch& sketch, const std::vector<End>& ends, double gap,
                           double cosine) {
-  std::vector<int> degree(sketch.nodes.cols());
-  for (const Stroke& s : sketch.strokes)
-    if (!is_closed(s.kind)) ++degree[s.begin], ++degree[s.end];
+  const std::vector<int> degree = node_degrees(sketch);
   const int n = int(ends.size());
   std::vector<int> best(n, -1);
   for (int i = 0; i < n; ++i) {

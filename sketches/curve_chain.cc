@@ -5,74 +5,45 @@
 #include <cmath>
 
 #include "sketches/curve.h"
+#include "sketches/smooth_joint.h"
 
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
 
-// One of a cubic's ends.
-struct CubicEnd {
-  int stroke = -1;
-  bool at_begin = false;
-};
+double radians(double degrees) { return degrees * M_PI / 180; }
 
-// Nodes where two ends of cubics meet, and nothing else does; others are empty.
-std::vector<std::vector<CubicEnd>> cubic_joints(const Sketch& sketch,
-                                                const std::vector<bool>& alone) {
-  std::vector<std::vector<CubicEnd>> at(sketch.nodes.cols());
-  std::vector<bool> taken(sketch.nodes.cols());
-  for (int s = 0; s < sketch.size(); ++s) {
-    const Stroke& stroke = sketch.strokes[s];
-    if (is_closed(stroke.kind)) continue;
-    at[stroke.begin].push_back({s, true});
-    at[stroke.end].push_back({s, false});
-    if (stroke.kind != StrokeKind::kBezier || (!alone.empty() && alone[s]))
-      taken[stroke.begin] = taken[stroke.end] = true;
-  }
-  for (size_t n = 0; n < at.size(); ++n)
-    if (taken[n] || at[n].size() != 2) at[n].clear();
-  return at;
+// Between cubics alone.
+std::vector<SmoothJoint> cubic_joints(const Sketch& sketch, double within_deg) {
+  std::vector<SmoothJoint> joints = find_smooth_joints(sketch, radians(within_deg));
+  joints.erase(std::remove_if(joints.begin(), joints.end(),
+                              [](const SmoothJoint& j) {
+                                return j.before.is_node || j.after.is_node;
+                              }),
+               joints.end());
+  return joints;
 }
 
-int handle_of(const Sketch& sketch, const CubicEnd& e) {
-  return sketch.strokes[e.stroke].handle + (e.at_begin ? 0 : 1);
-}
-
-// From the node to the handle beside it.
-Vector3d leg(const Sketch& sketch, const CubicEnd& e, int node) {
-  return sketch.handles.col(handle_of(sketch, e)) - sketch.nodes.col(node);
-}
-
-// Cosine of the turn of the tangent in a joint; -1 where there is no tangent.
-double turn_cosine(const Vector3d& a, const Vector3d& b) {
-  const double norms = a.norm() * b.norm();
-  return norms > 0 ? -a.dot(b) / norms : -1;
-}
-
-double cosine(double degrees) { return std::cos(degrees * M_PI / 180); }
-
+// Follows curves from stroke to stroke.
 struct Walker {
   const Sketch& sketch;
-  std::vector<std::vector<CubicEnd>> joints;
+  std::vector<const SmoothJoint*> joint;  // by node; null where curves end
   std::vector<bool> done;
 
-  // Follows the curve out of a stroke's end (or begin) as far as it is smooth; the strokes met, and
-  // whether they run against the walk. Returns the last node.
+  // Out of a stroke's end (or begin) as far as it is smooth; the strokes met, and whether they run
+  // against the walk. Returns the last node.
   int follow(int stroke, bool out_of_begin, std::vector<int>* strokes, std::vector<bool>* against) {
-    const Stroke* s = &sketch.strokes[stroke];
-    int node = out_of_begin ? s->begin : s->end;
-    while (node >= 0 && !joints[node].empty()) {
-      const std::vector<CubicEnd>& ends = joints[node];
-      if (ends[0].stroke == ends[1].stroke) break;  // a loop of one stroke
-      const CubicEnd& next = ends[ends[0].stroke == stroke ? 1 : 0];
+    int node = out_of_begin ? sketch.strokes[stroke].begin : sketch.strokes[stroke].end;
+    while (node >= 0 && joint[node]) {
+      const SmoothJoint& j = *joint[node];
+      const TangentEnd& next = j.before.stroke == stroke ? j.after : j.before;
       if (done[next.stroke]) break;  // closed
       done[next.stroke] = true;
       strokes->push_back(next.stroke);
-      against->push_back(!next.at_begin);
+      against->push_back(next.at_end);
       stroke = next.stroke;
-      s = &sketch.strokes[stroke];
-      node = next.at_begin ? s->end : s->begin;
+      node = next.at_end ? sketch.strokes[stroke].begin : sketch.strokes[stroke].end;
     }
     return node;
   }
@@ -81,28 +52,24 @@ struct Walker {
 }  // namespace
 
 void smooth_joints(Sketch* sketch, double within_deg) {
-  const auto joints = cubic_joints(*sketch, {});
-  for (int n = 0; n < int(joints.size()); ++n) {
-    if (joints[n].empty()) continue;
-    const CubicEnd &a = joints[n][0], &b = joints[n][1];
-    const Vector3d u = leg(*sketch, a, n), v = leg(*sketch, b, n);
-    const double turn = turn_cosine(u, v);
-    if (turn < cosine(within_deg) || turn >= cosine(kSmoothDeg / 2)) continue;
+  for (const SmoothJoint& joint : cubic_joints(*sketch, within_deg)) {
+    if (joint.angle < radians(kSmoothDeg / 2)) continue;
+    auto a = sketch->handles.col(joint.before.column), b = sketch->handles.col(joint.after.column);
+    const Vector3d node = sketch->nodes.col(joint.node), u = a - node, v = b - node;
     // Moving a leg of length l by an angle moves its handle by l times the angle.
     const Vector3d along = (u.norm() * u - v.norm() * v).normalized();
-    sketch->handles.col(handle_of(*sketch, a)) = sketch->nodes.col(n) + u.norm() * along;
-    sketch->handles.col(handle_of(*sketch, b)) = sketch->nodes.col(n) - v.norm() * along;
+    a = node + u.norm() * along;
+    b = node - v.norm() * along;
   }
 }
 
 std::vector<CurveChain> curve_chains(const Sketch& sketch, const std::vector<bool>& alone) {
-  Walker walker{sketch, cubic_joints(sketch, alone), std::vector<bool>(sketch.size())};
-  for (int n = 0; n < int(walker.joints.size()); ++n) {
-    std::vector<CubicEnd>& ends = walker.joints[n];
-    if (!ends.empty() &&
-        turn_cosine(leg(sketch, ends[0], n), leg(sketch, ends[1], n)) < cosine(kSmoothDeg))
-      ends.clear();
-  }
+  const std::vector<SmoothJoint> joints = cubic_joints(sketch, kSmoothDeg);
+  Walker walker{sketch, std::vector<const SmoothJoint*>(sketch.nodes.cols()),
+                std::vector<bool>(sketch.size())};
+  for (const SmoothJoint& j : joints)
+    if (alone.empty() || !(alone[j.before.stroke] || alone[j.after.stroke]))
+      walker.joint[j.node] = &j;
   std::vector<CurveChain> out;
   for (int s = 0; s < sketch.size(); ++s) {
     if (walker.done[s]) continue;

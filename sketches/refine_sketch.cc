@@ -10,6 +10,7 @@
 
 #include "sketches/curve.h"
 #include "sketches/relation_cost.h"
+#include "sketches/smooth_joint.h"
 
 namespace sketchsplat {
 namespace {
@@ -98,15 +99,9 @@ double cost_of(const Sketch& sketch, const SampleLayout& layout, const Samples& 
   return sum;
 }
 
-// The column that tells the tangent of a cubic or a line at one of its ends.
-SmoothJoint::Column tangent_column(const Stroke& s, bool at_end) {
-  if (s.kind == StrokeKind::kLine) return {true, at_end ? s.begin : s.end};
-  return {false, s.handle + (at_end ? 1 : 0)};
-}
-
 void add_smooth_joints(const RefineSketchOptions& options, Sketch* s, ceres::Problem* problem) {
-  const auto data = [&](SmoothJoint::Column c) {
-    return (c.is_node ? s->nodes : s->handles).col(c.index).data();
+  const auto data = [&](const TangentEnd& e) {
+    return (e.is_node ? s->nodes : s->handles).col(e.column).data();
   };
   for (const SmoothJoint& joint : find_smooth_joints(*s, options.smooth_angle)) {
     double* const blocks[] = {data(joint.before), s->nodes.col(joint.node).data(),
@@ -143,36 +138,6 @@ void add_relations(Relations* relations, double hold, Sketch* s, ceres::Problem*
 }
 
 }  // namespace
-
-std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_angle) {
-  std::vector<std::vector<std::pair<int, bool>>> ends(sketch.nodes.cols());
-  for (int i = 0; i < sketch.size(); ++i)
-    if (const Stroke& s = sketch.strokes[i]; !is_closed(s.kind)) {
-      ends[s.begin].push_back({i, false});
-      ends[s.end].push_back({i, true});
-    }
-  std::vector<SmoothJoint> joints;
-  const auto plain = [](StrokeKind k) {
-    return k == StrokeKind::kLine || k == StrokeKind::kBezier;
-  };
-  for (int n = 0; n < int(ends.size()); ++n) {
-    if (ends[n].size() != 2 || ends[n][0].first == ends[n][1].first) continue;
-    const auto [i, i_end] = ends[n][0];
-    const auto [k, k_end] = ends[n][1];
-    const Stroke &a = sketch.strokes[i], &b = sketch.strokes[k];
-    if (!plain(a.kind) || !plain(b.kind)) continue;
-    if (a.kind == StrokeKind::kLine && b.kind == StrokeKind::kLine) continue;
-    SmoothJoint joint{n, tangent_column(a, i_end), tangent_column(b, k_end), 0};
-    const auto at = [&](SmoothJoint::Column c) -> Eigen::Vector3d {
-      return (c.is_node ? sketch.nodes : sketch.handles).col(c.index) - sketch.nodes.col(n);
-    };
-    const Eigen::Vector3d u = at(joint.before), v = at(joint.after);
-    if (!(u.norm() > 0 && v.norm() > 0)) continue;
-    joint.angle = std::atan2(u.cross(v).norm(), -u.dot(v));
-    if (joint.angle <= smooth_angle) joints.push_back(joint);
-  }
-  return joints;
-}
 
 RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layout,
                                  const SampleQuadratics& quadratics,

@@ -29,20 +29,6 @@ struct RefineSketchResult {
   double initial_cost = 0, final_cost = 0;  ///< of the quadratics, without the prior
 };
 
-/// Two columns of control points that lie, with their node between them, on a line: the tangents of
-/// a smooth joint.
-struct SmoothJoint {
-  struct Column {
-    bool is_node = false;  ///< of Sketch::nodes, the far end of a line; else of Sketch::handles
-    int index = -1;
-  };
-  int node = -1;
-  Column before, after;
-  double angle = 0;  ///< [rad] between the tangents, 0 if they continue one another
-};
-/// All joints that turn by at most `smooth_angle` [rad], see RefineSketchOptions.
-std::vector<SmoothJoint> find_smooth_joints(const Sketch& sketch, double smooth_angle);
-
 /// Moves nodes and handles so that the samples of `layout` reach the least sum of their quadratics.
 /// Strokes that share a node stay joined. What the samples do not determine (an end along its line)
 /// stays where it is. `relations`, if given, add (residual / sigma)^2 each, in the units of the

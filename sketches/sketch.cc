@@ -72,6 +72,13 @@ ControlPoints control_points(const Sketch& sketch, int stroke) {
   return c;
 }
 
+std::vector<int> node_degrees(const Sketch& sketch) {
+  std::vector<int> degree(sketch.nodes.cols());
+  for (const Stroke& s : sketch.strokes)
+    if (!is_closed(s.kind)) ++degree[s.begin], ++degree[s.end];
+  return degree;
+}
+
 Sketch keep_strokes(const Sketch& sketch, const std::vector<bool>& keep) {
   Sketch out;
   std::vector<int> node(sketch.nodes.cols(), -1);

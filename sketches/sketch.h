@@ -85,6 +85,9 @@ struct ControlPoints {
 };
 ControlPoints control_points(const Sketch& sketch, int stroke);
 
+/// Of every node, how many ends of strokes lie in it.
+std::vector<int> node_degrees(const Sketch& sketch);
+
 /// Removes strokes marked false, and the nodes and handles that nobody uses then.
 Sketch keep_strokes(const Sketch& sketch, const std::vector<bool>& keep);
 

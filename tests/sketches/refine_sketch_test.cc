@@ -8,6 +8,7 @@
 #include "sketches/closest.h"
 #include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "sketches/smooth_joint.h"
 
 namespace sketchsplat {
 namespace {

@@ -141,6 +141,16 @@ TEST(KeepStrokes, KeepsAllOrNothing) {
   EXPECT_EQ(keep_strokes(Sketch(), {}).size(), 0);
 }
 
+TEST(NodeDegrees, CountEndsAndNothingOfClosedStrokes) {
+  Sketch s;
+  s.nodes = Eigen::Matrix3Xd::Random(3, 4);
+  s.add_stroke(StrokeKind::kLine, 0, 1, {});
+  s.add_stroke(StrokeKind::kLine, 1, 2, {});
+  s.add_stroke(StrokeKind::kBezier, 1, 1, {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()});
+  s.add_stroke(StrokeKind::kCircle, -1, -1, {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()});
+  EXPECT_EQ(node_degrees(s), (std::vector<int>{1, 4, 1, 0}));
+}
+
 TEST(KindNames, ReadBackAndRefuseOthers) {
   for (int i = 0; i < 5; ++i) {
     StrokeKind kind;
