@@ -5,11 +5,10 @@
 #include <cmath>
 #include <tuple>
 
-#include "edges/match.h"
+#include "pipelines/round_arcs.h"
 #include "sketches/closest.h"
 #include "sketches/conic.h"
 #include "sketches/curve.h"
-#include "sketches/ellipse_run.h"
 
 namespace sketchsplat {
 namespace {
@@ -18,50 +17,10 @@ using Eigen::Vector3d;
 
 constexpr double kStepPx = 0.5;    // along a loose end
 constexpr double kShortestPx = 5;  // strokes shorter than this have no direction to go on in
-constexpr double kRoundPx = 0.5;   // between an ellipse and its circle
-constexpr int kFewestSure = 6;     // sightings of a gap that tell something
 
 // Cubics do not say how they go on, and short arcs of ellipses hardly.
 bool is_shy(StrokeKind kind) {
   return kind == StrokeKind::kBezier || kind == StrokeKind::kEllipticArc;
-}
-
-// Points on a curve between two parameters, two pixels apart, with tangents.
-CurvePoints points_between(StrokeKind kind, const ControlPoints& c, double t0, double t1,
-                           double length, double footprint) {
-  CurvePoints out;
-  const int n = std::max(1, int(length / (2 * footprint)));
-  out.position.resize(3, n);
-  out.tangent.resize(3, n);
-  for (int k = 0; k < n; ++k) {
-    Vector3d p, d;
-    evaluate_curve<double>(kind, c.p.data(), t0 + (t1 - t0) * (k + 0.5) / n, &p, &d);
-    out.position.col(k) = p;
-    out.tangent.col(k) = d.normalized();
-  }
-  out.first = {0, n};
-  return out;
-}
-
-// May there be an edge here, as far as the views can tell?
-bool is_possible(const CurvePoints& gap, const EdgeWorld& world, double length,
-                 const CloseOptions& options) {
-  if (world.hull.empty()) return length <= options.reach_px * world.footprint;
-  MatchOptions match;
-  match.reach_px = 1.5;
-  match.min_run = 0;
-  match.exclusive = false;
-  const Matches matches = match_samples(world, gap, match);
-  int sure = 0, seen = 0;
-  for (int i = 0; i < gap.position.cols(); ++i)
-    for (size_t v = 0; v < world.views.size(); ++v) {
-      if (!world.hull.surely_visible(gap.position.col(i), world.views[v].center_in_world()))
-        continue;
-      ++sure;
-      for (int m = matches.first[i]; m < matches.first[i + 1]; ++m)
-        seen += matches.matches[m].view == int(v);
-    }
-  return sure < kFewestSure || seen >= options.least_seen * sure;
 }
 
 // The sketch while strokes come, go and are split.
@@ -70,8 +29,6 @@ class Graph {
   Graph(const Sketch& sketch, const EdgeWorld& world, const CloseOptions& options)
       : s_(sketch), world_(world), options_(options), alive_(sketch.size(), true) {}
 
-  void round_arcs();
-  void round_elliptic_arcs();
   void bridge_lines();
   void join_ends();
   Closed finish() {
@@ -105,7 +62,6 @@ class Graph {
     alive_.push_back(true);
     return s_.add_stroke(kind, begin, end, handles, evidence);
   }
-  void round_ellipse(int a, bool a_back, int b, bool b_back);
   bool bridge(int a, bool a_end, int b, bool b_end);
   ControlPoints reaching(int stroke, const std::vector<int>& degree) const;
   Meeting first_meeting(int stroke, bool at_end) const;
@@ -119,91 +75,6 @@ class Graph {
   std::vector<bool> alive_;
   Closed result_;
 };
-
-void Graph::round_arcs() {
-  const std::vector<int> degree = degrees();
-  for (int i = 0; i < s_.size(); ++i) {
-    const Stroke stroke = s_.strokes[i];
-    if (!is_open(i) || stroke.kind != StrokeKind::kArc) continue;
-    if (degree[stroke.begin] != 1 || degree[stroke.end] != 1) continue;
-    const CircleParameters c = circle_parameters(s_, i);
-    if (c.straight || c.angle < options_.least_turn * 2 * M_PI) continue;
-    const double gap = (2 * M_PI - c.angle) * c.radius;
-    const double t1 = 2 * M_PI / c.angle;
-    if (!is_possible(
-            points_between(stroke.kind, control_points(s_, i), 1, t1, gap, world_.footprint),
-            world_, gap, options_))
-      continue;
-    alive_[i] = false;
-    add(StrokeKind::kCircle, -1, -1, {c.centre, c.normal * c.radius}, s_.evidence[i]);
-    ++result_.rounded;
-  }
-}
-
-// Most of an ellipse, or of a circle, in one arc or in two that go on from one another, is all of
-// it.
-void Graph::round_elliptic_arcs() {
-  const std::vector<int> degree = degrees();
-  for (int a = 0; a < s_.size(); ++a)
-    for (int b = a; b < s_.size(); ++b) {
-      const auto is_part = [&](int i) {
-        const StrokeKind kind = s_.strokes[i].kind;
-        return is_open(i) &&
-               (kind == StrokeKind::kEllipticArc || (a != b && kind == StrokeKind::kArc));
-      };
-      if (!is_part(a) || !is_part(b)) continue;
-      const Stroke &sa = s_.strokes[a], &sb = s_.strokes[b];
-      if (a == b && (degree[sa.begin] != 1 || degree[sa.end] != 1)) continue;
-      // Two must share one node and nobody else any.
-      const bool a_end = sa.end == sb.begin || sa.end == sb.end;
-      const bool b_end = sb.end == sa.begin || sb.end == sa.end;
-      if (a != b && (node_of(a, a_end) != node_of(b, b_end) || degree[node_of(a, a_end)] != 2 ||
-                     degree[node_of(a, !a_end)] != 1 || degree[node_of(b, !b_end)] != 1))
-        continue;
-      round_ellipse(a, !a_end, b, b_end);
-    }
-  // An ellipse that is round to half a pixel is a circle.
-  for (int i = 0; i < s_.size(); ++i) {
-    if (!alive_[i] || s_.strokes[i].kind != StrokeKind::kEllipse) continue;
-    const ControlPoints c = control_points(s_, i);
-    const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
-    const double a = axes.major.norm(), b = axes.minor.norm();
-    if ((a - b) / 2 > px(kRoundPx)) continue;
-    alive_[i] = false;
-    const Vector3d normal = axes.major.cross(axes.minor).normalized();
-    add(StrokeKind::kCircle, -1, -1, {c.p[0], (a + b) / 2 * normal}, Evidence(s_.evidence[i]));
-  }
-}
-
-void Graph::round_ellipse(int a, bool a_back, int b, bool b_back) {
-  constexpr int kPoints = 32;
-  Eigen::Matrix3Xd points(3, a == b ? kPoints : 2 * kPoints - 1);
-  Vector3d d;
-  for (int k = 0; k < points.cols(); ++k) {
-    const double t = double(k % (kPoints - 1)) / (kPoints - 1);
-    const bool first = k < kPoints - 1 || (a == b && k == kPoints - 1);
-    const double u = k == points.cols() - 1 ? 1 : t;
-    Vector3d p;
-    evaluate_stroke(s_, first ? a : b, (first ? a_back : b_back) ? 1 - u : u, &p, &d);
-    points.col(k) = p;
-  }
-  const EllipseRun fit = ellipse_along(points);
-  const double gap = 2 * M_PI - fit.sweep();
-  if (!fit.ok || fit.distance.maxCoeff() > px(1)) return;
-  if (fit.sweep() < options_.least_turn * 2 * M_PI || gap < -0.2) return;
-  if (gap > 0) {
-    ControlPoints rest;
-    rest.p[0] = fit.centre, rest.p[1] = fit.p, rest.p[2] = fit.q;
-    const double t0 = fit.angle[points.cols() - 1] / (2 * M_PI), t1 = t0 + gap / (2 * M_PI);
-    const double length = gap * 0.5 * (fit.p.norm() + fit.q.norm());  // about
-    if (!is_possible(points_between(StrokeKind::kEllipse, rest, t0, t1, length, world_.footprint),
-                     world_, length, options_))
-      return;
-  }
-  alive_[a] = alive_[b] = false;
-  ++result_.rounded;
-  add(StrokeKind::kEllipse, -1, -1, {fit.centre, fit.p, fit.q}, Evidence(s_.evidence[a]));
-}
 
 // Joins two lines through a gap if they are one.
 bool Graph::bridge(int a, bool a_end, int b, bool b_end) {
@@ -225,9 +96,7 @@ bool Graph::bridge(int a, bool a_end, int b, bool b_end) {
   }
   ControlPoints line;
   line.p[0] = x, line.p[1] = y, line.count = 2;
-  if (!is_possible(points_between(StrokeKind::kLine, line, 0, 1, gap, world_.footprint), world_,
-                   gap, options_))
-    return false;
+  if (!may_hold_edge(StrokeKind::kLine, line, 0, 1, gap, world_, options_.gap)) return false;
   alive_[a] = alive_[b] = false;
   const Evidence& e = s_.evidence[(x - p).norm() > (q - y).norm() ? a : b];
   add(StrokeKind::kLine, far_a, far_b, {}, Evidence(e));
@@ -394,12 +263,13 @@ void Graph::join_ends() {
 }  // namespace
 
 Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const CloseOptions& options) {
-  Graph graph(sketch, world, options);
-  graph.round_arcs();
-  graph.round_elliptic_arcs();
+  int rounded = 0;
+  Graph graph(round_arcs(sketch, world, options.round, options.gap, &rounded), world, options);
   graph.bridge_lines();
   graph.join_ends();
-  return graph.finish();
+  Closed closed = graph.finish();
+  closed.rounded = rounded;
+  return closed;
 }
 
 }  // namespace sketchsplat

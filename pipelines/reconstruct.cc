@@ -2,7 +2,6 @@
 #include "pipelines/reconstruct.h"
 
 #include "datasets/errors.h"
-#include "pipelines/propose.h"
 #include "pipelines/stages.h"
 
 namespace sketchsplat {
@@ -27,11 +26,8 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
   sketch = finish_sketch(sketch, world, options, &report, progress);
   if (sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
-  std::vector<std::string> views;
-  for (const View& view : world.views) views.push_back(view.name);
-  const Sketch proposed = propose_edges(sketch, world);
-  report.counts.push_back({"proposed", double(proposed.size())});
-  return {sketch, report, proposed, views};
+  const Sketch proposed = propose_hidden(sketch, world, &report);
+  return {sketch, report, proposed, view_names(world)};
 }
 
 }  // namespace sketchsplat

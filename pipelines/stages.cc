@@ -10,6 +10,7 @@
 #include "pipelines/detectors.h"
 #include "pipelines/kinds.h"
 #include "pipelines/observe.h"
+#include "pipelines/propose.h"
 #include "sketches/curve_chain.h"
 #include "sketches/segment.h"
 
@@ -200,7 +201,7 @@ int drop_unsure(const Observation& observation, const EdgeWorld& world, double l
   std::vector<bool> stays;
   for (const Evidence& e : sketch->evidence) stays.push_back(!(e.confidence < least));
   renumber(stays, kept);
-  *sketch = keep_strokes(*sketch, stays);
+  *sketch = keep_confident(*sketch, least);
   if (before > 0 && sketch->size() == 0)
     throw TooLittleError("expected strokes as probable as --min-confidence, found " +
                          std::to_string(before) + " less probable ones");
@@ -246,6 +247,18 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
   stage.result(std::to_string(out.size()) + " strokes");
   return out;
+}
+
+Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report) {
+  const Sketch proposed = propose_edges(sketch, world);
+  report->counts.push_back({"proposed", double(proposed.size())});
+  return proposed;
+}
+
+std::vector<std::string> view_names(const EdgeWorld& world) {
+  std::vector<std::string> names;
+  for (const View& view : world.views) names.push_back(view.name);
+  return names;
 }
 
 }  // namespace sketchsplat

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "datasets/scene.h"
 #include "edges/lift.h"
 #include "pipelines/optimize.h"
@@ -36,5 +39,11 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
 /// Last polish on the edgels, last choice, and the evidence that is written with the sketch.
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// Edges that no view shows but the graph implies (propose.h); counts them in the report.
+Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report);
+
+/// Of every view, in the order that Evidence::views counts in.
+std::vector<std::string> view_names(const EdgeWorld& world);
 
 }  // namespace sketchsplat

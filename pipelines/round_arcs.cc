@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/round_arcs.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "sketches/conic.h"
+#include "sketches/curve.h"
+#include "sketches/ellipse_run.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+class Rounder {
+ public:
+  Rounder(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
+          const GapOptions& gap)
+      : s_(sketch),
+        world_(world),
+        options_(options),
+        gap_options_(gap),
+        alive_(sketch.size(), true) {}
+
+  void round_arcs();
+  void round_elliptic_arcs();
+  void ellipses_to_circles();
+  Sketch sketch() const { return keep_strokes(s_, alive_); }
+  int rounded() const { return rounded_; }
+
+ private:
+  bool is_open(int i) const { return alive_[i] && !is_closed(s_.strokes[i].kind); }
+  int node_of(int stroke, bool at_end) const {
+    return at_end ? s_.strokes[stroke].end : s_.strokes[stroke].begin;
+  }
+  // Strokes a and b, which may be the same, become a closed one.
+  void replace(int a, int b, StrokeKind kind, const std::vector<Vector3d>& handles) {
+    alive_[a] = alive_[b] = false;
+    alive_.push_back(true);
+    s_.add_stroke(kind, -1, -1, handles, Evidence(s_.evidence[a]));
+  }
+  void round_ellipse(int a, bool a_back, int b, bool b_back);
+
+  Sketch s_;
+  const EdgeWorld& world_;
+  const RoundOptions& options_;
+  const GapOptions& gap_options_;
+  std::vector<bool> alive_;
+  int rounded_ = 0;
+};
+
+void Rounder::round_arcs() {
+  const std::vector<int> degree = node_degrees(s_);
+  for (int i = 0; i < s_.size(); ++i) {
+    const Stroke stroke = s_.strokes[i];
+    if (!is_open(i) || stroke.kind != StrokeKind::kArc) continue;
+    if (degree[stroke.begin] != 1 || degree[stroke.end] != 1) continue;
+    const CircleParameters c = circle_parameters(s_, i);
+    if (c.straight || c.angle < options_.least_turn * 2 * M_PI) continue;
+    const double gap = (2 * M_PI - c.angle) * c.radius;
+    const double t1 = 2 * M_PI / c.angle;
+    if (!may_hold_edge(stroke.kind, control_points(s_, i), 1, t1, gap, world_, gap_options_))
+      continue;
+    replace(i, i, StrokeKind::kCircle, {c.centre, c.normal * c.radius});
+    ++rounded_;
+  }
+}
+
+// Most of an ellipse, or of a circle, in one arc or in two that go on from one another, is all of
+// it.
+void Rounder::round_elliptic_arcs() {
+  const std::vector<int> degree = node_degrees(s_);
+  for (int a = 0; a < s_.size(); ++a)
+    for (int b = a; b < s_.size(); ++b) {
+      const auto is_part = [&](int i) {
+        const StrokeKind kind = s_.strokes[i].kind;
+        return is_open(i) &&
+               (kind == StrokeKind::kEllipticArc || (a != b && kind == StrokeKind::kArc));
+      };
+      if (!is_part(a) || !is_part(b)) continue;
+      const Stroke &sa = s_.strokes[a], &sb = s_.strokes[b];
+      if (a == b && (degree[sa.begin] != 1 || degree[sa.end] != 1)) continue;
+      // Two must share one node and nobody else any.
+      const bool a_end = sa.end == sb.begin || sa.end == sb.end;
+      const bool b_end = sb.end == sa.begin || sb.end == sa.end;
+      if (a != b && (node_of(a, a_end) != node_of(b, b_end) || degree[node_of(a, a_end)] != 2 ||
+                     degree[node_of(a, !a_end)] != 1 || degree[node_of(b, !b_end)] != 1))
+        continue;
+      round_ellipse(a, !a_end, b, b_end);
+    }
+}
+
+void Rounder::round_ellipse(int a, bool a_back, int b, bool b_back) {
+  constexpr int kPoints = 32;
+  Eigen::Matrix3Xd points(3, a == b ? kPoints : 2 * kPoints - 1);
+  Vector3d d;
+  for (int k = 0; k < points.cols(); ++k) {
+    const double t = double(k % (kPoints - 1)) / (kPoints - 1);
+    const bool first = k < kPoints - 1 || (a == b && k == kPoints - 1);
+    const double u = k == points.cols() - 1 ? 1 : t;
+    Vector3d p;
+    evaluate_stroke(s_, first ? a : b, (first ? a_back : b_back) ? 1 - u : u, &p, &d);
+    points.col(k) = p;
+  }
+  const EllipseRun fit = ellipse_along(points);
+  const double gap = 2 * M_PI - fit.sweep();
+  if (!fit.ok || fit.distance.maxCoeff() > options_.aside_px * world_.footprint) return;
+  if (fit.sweep() < options_.least_turn * 2 * M_PI || gap < -0.2) return;
+  if (gap > 0) {
+    ControlPoints rest;
+    rest.p[0] = fit.centre, rest.p[1] = fit.p, rest.p[2] = fit.q;
+    const double t0 = fit.angle[points.cols() - 1] / (2 * M_PI), t1 = t0 + gap / (2 * M_PI);
+    const double length = gap * 0.5 * (fit.p.norm() + fit.q.norm());  // about
+    if (!may_hold_edge(StrokeKind::kEllipse, rest, t0, t1, length, world_, gap_options_)) return;
+  }
+  replace(a, b, StrokeKind::kEllipse, {fit.centre, fit.p, fit.q});
+  ++rounded_;
+}
+
+// An ellipse that is round to half a pixel is a circle.
+void Rounder::ellipses_to_circles() {
+  for (int i = 0; i < s_.size(); ++i) {
+    if (!alive_[i] || s_.strokes[i].kind != StrokeKind::kEllipse) continue;
+    const ControlPoints c = control_points(s_, i);
+    const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
+    const double a = axes.major.norm(), b = axes.minor.norm();
+    if ((a - b) / 2 > options_.circle_px * world_.footprint) continue;
+    const Vector3d normal = axes.major.cross(axes.minor).normalized();
+    replace(i, i, StrokeKind::kCircle, {c.p[0], (a + b) / 2 * normal});
+  }
+}
+
+}  // namespace
+
+Sketch round_arcs(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
+                  const GapOptions& gap, int* rounded) {
+  Rounder rounder(sketch, world, options, gap);
+  rounder.round_arcs();
+  rounder.round_elliptic_arcs();
+  rounder.ellipses_to_circles();
+  *rounded = rounder.rounded();
+  return rounder.sketch();
+}
+
+}  // namespace sketchsplat
