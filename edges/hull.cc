@@ -66,7 +66,7 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
   // Blocks of cells first: most of space is empty, most of the rest deep inside.
   constexpr int kBlock = 4;
   const double half_diagonal = 0.87;  // of a cell, half the square root of 3
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for collapse(3) schedule(dynamic, 16)
   for (int k0 = 0; k0 < nz_; k0 += kBlock)
     for (int j0 = 0; j0 < ny_; j0 += kBlock)
       for (int i0 = 0; i0 < nx_; i0 += kBlock) {

@@ -127,6 +127,7 @@ void report_scenes(std::vector<BenchRow> rows, const std::string& out, bool abla
                : std::vector<std::string>{"structure_strokes_per_edge",
                                           "structure_f",
                                           "detect",
+                                          "hull",
                                           "lift",
                                           "fit",
                                           "round",

@@ -41,6 +41,7 @@ EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, Ru
                          std::to_string(with_edges));
   report->counts.push_back({"views", double(views.size())});
   report->counts.push_back({"edgels", double(edgels)});
+  Stage stage("hull", 0, report, progress);
   return make_edge_world(std::move(views), std::move(maps));
 }
 

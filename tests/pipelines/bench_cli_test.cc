@@ -54,7 +54,7 @@ TEST_F(Bench, ComparesThePresetsInATableAndInFiles) {
     for (const char* label : {"version", "program", "cpu", "cores", "memory", "threads"})
       EXPECT_FALSE(row[label].get<std::string>().empty()) << label;
     double stages = 0;
-    for (const char* stage : {"detect", "lift", "fit", "round", "polish", "write"})
+    for (const char* stage : {"detect", "hull", "lift", "fit", "round", "polish", "write"})
       stages += double(row[stage]);
     EXPECT_LT(stages, row["total"]);
     EXPECT_GT(stages, 0.6 * double(row["total"])) << "nothing long is left out: " << row;
