@@ -34,7 +34,8 @@ CurvePoints points_between(StrokeKind kind, const ControlPoints& c, double t0, d
 
 bool may_hold_edge(StrokeKind kind, const ControlPoints& curve, double t0, double t1, double length,
                    const EdgeWorld& world, const GapOptions& options) {
-  if (world.hull.empty()) return length <= options.narrow_px * world.footprint;
+  const bool narrow = length <= options.narrow_px * world.footprint;
+  if (world.hull.empty()) return narrow;
   const CurvePoints gap = points_between(kind, curve, t0, t1, length, world.footprint);
   MatchOptions match;
   match.reach_px = 1.5;
@@ -50,7 +51,8 @@ bool may_hold_edge(StrokeKind kind, const ControlPoints& curve, double t0, doubl
       for (int m = matches.first[i]; m < matches.first[i + 1]; ++m)
         seen += matches.matches[m].view == int(v);
     }
-  return sure < kFewestSure || seen >= options.least_seen * sure;
+  if (sure < kFewestSure) return narrow || options.trusting;
+  return seen >= options.least_seen * sure;
 }
 
 }  // namespace sketchsplat

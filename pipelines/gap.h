@@ -9,6 +9,7 @@ namespace sketchsplat {
 struct GapOptions {
   double narrow_px = 8;      ///< [px] up to which a gap is closed where nothing is known of it
   double least_seen = 0.15;  ///< share of the sure sightings of a gap that must see an edge
+  bool trusting = true;      ///< may wide gaps be closed that no view must see?
 };
 
 /// May an edge run along the curve of this kind between the parameters `t0` and `t1`, about

@@ -18,6 +18,7 @@
 #include "pipelines/rechain.h"
 #include "pipelines/regularize.h"
 #include "pipelines/select.h"
+#include "pipelines/splice.h"
 #include "sketches/length_unit.h"
 #include "sketches/segment.h"
 #include "topology/planar_faces.h"
@@ -46,6 +47,7 @@ struct ReconstructOptions : DetectionOptions {
   OptimizeOptions optimize;
   TopologyOptions topology;
   PolishOptions polish;
+  SpliceOptions splice;
   RechainOptions rechain;
   CloseOptions close;
   RegularizeOptions regularize;

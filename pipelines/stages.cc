@@ -122,8 +122,10 @@ void count_regularities(const Regularized& regular, RunReport* report) {
 
 // Chains of strokes in as few words as their edgels allow.
 Sketch rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
-  const Rechained r = rechain(sketch, world, options.segment, options.rechain);
-  return r.changes > 0 ? polish(r.sketch, world, early(options)) : sketch;
+  const Spliced spliced = splice(sketch, world, options.splice);
+  const Rechained r = rechain(spliced.sketch, world, options.segment, options.rechain);
+  const bool changed = spliced.overlaps + spliced.gaps + r.changes > 0;
+  return changed ? polish(r.sketch, world, early(options)) : sketch;
 }
 
 }  // namespace
