@@ -70,18 +70,18 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
   const RefineSketchResult free = refine_sketch(sketch, seen.layout, q);
   // It was decided on a linear view. If the whole is no shorter, relations of conics are to blame,
   // most likely, which bend most: the last ones.
-  for (int stages = 5; stages > 0; --stages) {
+  for (int stages = 6; stages > 0; --stages) {
     RegularityFinder finder(sketch, all, footprint, options);
-    if (!finder.ok()) return out;
+    if (!finder.weigher().ok()) return out;
     finder.find(stages);
-    if (finder.exhausted()) continue;
+    if (finder.weigher().exhausted()) continue;
     Relations relations = finder.kept();
     if (relations.list.empty()) return out;
-    const Samples linear = evaluate_samples(finder.sketch(), seen.layout);
+    const Samples linear = evaluate_samples(finder.weigher().sketch(), seen.layout);
     const SampleQuadratics there = moved_to(linear, now, q, &cost);
     const RefineSketchResult bound =
-        refine_sketch(finder.sketch(), seen.layout, there, {}, &relations);
-    const double saved = finder.gain() - (cost + bound.final_cost - free.final_cost) / 2;
+        refine_sketch(finder.weigher().sketch(), seen.layout, there, {}, &relations);
+    const double saved = finder.weigher().gain() - (cost + bound.final_cost - free.final_cost) / 2;
     if (!(saved > 0)) continue;
     out.nats_saved = saved;
     out.sketch = bound.sketch;

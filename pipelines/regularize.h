@@ -26,15 +26,15 @@ struct Regularized {
   double nats_saved = 0;  ///< by which the description became shorter
 };
 
-/// Finds what strokes have in common (parallel, perpendicular, coplanar, coaxial, of equal radius)
-/// and lets them share it where that makes the description shorter. A parameter that is shared need
-/// not be stated: that saves its price, or log(range / standard deviation) less the log of the
-/// number of candidates and less the price, if that is less (vague agreement is chance). The edgels
-/// then are explained worse by half the squared Mahalanobis distance of the relation's residual,
-/// from the covariance of all control points, given the relations taken before. What was taken is
-/// imposed on the least squares of the edgels with small standard deviations, and kept if the whole
-/// is shorter indeed. `seen`: the sketch (or one a small move before it) held against the edgels;
-/// `footprint`: world length of a pixel.
+/// Finds what strokes have in common (parallel, perpendicular, coplanar, coaxial, equal radius,
+/// mirrored) and lets them share it where that makes the description shorter. A parameter that is
+/// shared need not be stated: that saves its price, or log(range / standard deviation) less the log
+/// of the number of candidates and less the price, if that is less (vague agreement is chance). The
+/// edgels then are explained worse by half the squared Mahalanobis distance of the relation's
+/// residual, from the covariance of all control points, given the relations taken before. What was
+/// taken is imposed on the least squares of the edgels with small standard deviations, and kept if
+/// the whole is shorter indeed. `seen`: the sketch (or one a small move before it) held against the
+/// edgels; `footprint`: world length of a pixel.
 Regularized regularize(const Sketch& sketch, const Observation& seen, double footprint,
                        const RegularizeOptions& options);
 

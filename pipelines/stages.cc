@@ -109,9 +109,8 @@ RegularizeOptions regularize_options(const ReconstructOptions& options) {
 }
 
 void count_regularities(const Regularized& regular, RunReport* report) {
-  for (const RelationKind kind :
-       {RelationKind::kParallel, RelationKind::kPerpendicular, RelationKind::kCoplanar,
-        RelationKind::kCoaxial, RelationKind::kEqualRadius}) {
+  for (int k = 0; k < kRelationKinds; ++k) {
+    const RelationKind kind = RelationKind(k);
     const auto is_kind = [kind](const Regularity& r) { return r.kind == kind; };
     const auto count = std::count_if(regular.kept.begin(), regular.kept.end(), is_kind);
     report->counts.push_back({std::string("regular_") + relation_name(kind), double(count)});

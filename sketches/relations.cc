@@ -92,12 +92,21 @@ struct RelationResidual {
         r[0] = scale * (radius - p[own][0]);
         return true;
       }
+      case RelationKind::kSymmetric: {
+        const Vec3<T> a = Block<T>(p[0]), b = Block<T>(p[1]), n = first.normalized();
+        Eigen::Map<Vec3<T>> out(r);
+        out.template head<2>() = relation.across.cast<T>() * (b - a - n * n.dot(b - a)) * scale;
+        const Vec3<T> middle = (a + b) * T(0.5) - origin.cast<T>();
+        r[2] = scale * (n.dot(middle) - p[own + 1][0]);
+        return true;
+      }
     }
     return false;
   }
 };
 
 int num_residuals(RelationKind kind) {
+  if (kind == RelationKind::kSymmetric) return 3;
   return kind == RelationKind::kParallel || kind == RelationKind::kCoaxial ? 2 : 1;
 }
 
@@ -114,7 +123,7 @@ Cost* make_cost(const Sketch& sketch, const Relations& relations, const Relation
     residual->kind = stroke.kind;
     residual->own = num_handles(stroke.kind) + (is_closed(stroke.kind) ? 0 : 2);
   } else {
-    residual->own = relation.kind == RelationKind::kPerpendicular ? 0 : 1;
+    residual->own = (relation.point >= 0) + (relation.twin >= 0);
   }
   auto* cost = new Cost(residual);
   for (size_t i = 0; i < relation_blocks(sketch, relations, relation).size(); ++i)
@@ -126,8 +135,8 @@ Cost* make_cost(const Sketch& sketch, const Relations& relations, const Relation
 }  // namespace
 
 const char* relation_name(RelationKind kind) {
-  constexpr const char* kNames[] = {"parallel", "perpendicular", "coplanar", "coaxial",
-                                    "equal_radius"};
+  constexpr const char* kNames[] = {"parallel", "perpendicular", "coplanar",
+                                    "coaxial",  "equal_radius",  "symmetric"};
   return kNames[int(kind)];
 }
 
@@ -142,6 +151,7 @@ std::vector<int> relation_blocks(const Sketch& sketch, const Relations& relation
     if (!is_closed(s.kind)) blocks.push_back(s.end);
   } else if (relation.point >= 0) {
     blocks.push_back(relation.point);
+    if (relation.twin >= 0) blocks.push_back(relation.twin);
   }
   const int direction = relations.shared[relation.shared].direction;
   if (direction >= 0) blocks.push_back(shared + direction);

@@ -27,7 +27,16 @@ struct SharedQuantity {
 ///   coplanar       a node or a handle in a shared plane                          1
 ///   coaxial        the centre of an arc, circle or ellipse on a shared axis      2
 ///   equal radius   of an arc or a circle                                         1
-enum class RelationKind { kParallel, kPerpendicular, kCoplanar, kCoaxial, kEqualRadius };
+///   symmetric      two points that mirror one another in a shared plane          3
+enum class RelationKind {
+  kParallel,
+  kPerpendicular,
+  kCoplanar,
+  kCoaxial,
+  kEqualRadius,
+  kSymmetric
+};
+constexpr int kRelationKinds = 6;
 const char* relation_name(RelationKind kind);
 
 struct Relation {
@@ -35,8 +44,10 @@ struct Relation {
   int shared = -1;  ///< index of the quantity
   int other = -1;   ///< perpendicular: the second direction
   int stroke = -1;  ///< parallel, coaxial, equal radius
-  int point = -1;   ///< coplanar: a node, or the number of nodes plus a handle
-  /// Parallel, coaxial: unit vectors across the direction, in which the residuals are stated.
+  int point = -1;   ///< coplanar, symmetric: a node, or the number of nodes plus a handle
+  int twin = -1;    ///< symmetric: the other point
+  /// Parallel, coaxial, symmetric: unit vectors across the direction, in which residuals are
+  /// stated.
   Eigen::Matrix<double, 2, 3> across = Eigen::Matrix<double, 2, 3>::Zero();
   double sign = 1;   ///< parallel: -1 if the stroke runs against the direction
   double scale = 1;  ///< [px per unit of the residual], the unit being a radian or a world length

@@ -150,6 +150,37 @@ TEST(Regularize, HolesOfOneDrillShareAxisAndRadiusOthersDoNot) {
   EXPECT_LT((b.centre - a.centre).cross(a.normal).norm(), 0.005 * px);
 }
 
+// Holes in pairs on both sides of a plane, at heights and distances of their own; the last pair is
+// out of place by `off_px`.
+Sketch pairs_of_holes(double off_px) {
+  Sketch s;
+  const double px = 3.0 / 500;
+  const Vector3d axis = Vector3d(1, 2, 5).normalized();
+  Vector3d x, y;
+  frame_of<double>(axis, &x, &y);
+  for (int k = 0; k < 5; ++k) {
+    const double side = 0.11 + 0.06 * k + 0.01 * (k == 2), along = -0.3 + 0.14 * k + 0.03 * (k % 2);
+    const double off = k == 4 ? off_px * px : 0;
+    const Vector3d middle = kMiddle + along * y + (0.05 * k - 0.11 + 0.01 * (k == 3)) * axis;
+    add_circle(&s, middle + side * x, (0.035 + 0.011 * k) * axis);
+    add_circle(&s, middle - (side + off) * x, (0.035 + 0.011 * k) * axis);
+  }
+  // What tells the direction of the mirror's normal.
+  for (double side : {-0.4, 0.4})
+    add_line(&s, kMiddle - 0.4 * x + side * y, kMiddle + 0.4 * x + side * y);
+  return s;
+}
+
+TEST(Regularize, HolesThatMirrorOneAnotherAreSymmetricOthersAreNot) {
+  for (const double off : {0.0, 1.5}) {
+    const Sketch truth = pairs_of_holes(off);
+    const Pair p = both(truth, noisy_world(truth, 12, 3));
+    EXPECT_TRUE(together(p.bound, RelationKind::kSymmetric, 0, 1)) << off;
+    EXPECT_TRUE(together(p.bound, RelationKind::kSymmetric, 2, 7)) << off;
+    EXPECT_EQ(together(p.bound, RelationKind::kSymmetric, 8, 9), off == 0);
+  }
+}
+
 // Lines and rings anywhere; radii five pixels apart, as two that agree by chance are equal to all
 // who look.
 Sketch unrelated(unsigned seed) {
@@ -206,7 +237,7 @@ TEST(Regularize, WhatWasTakenFirstStillHoldsAfterWhatWasTakenLast) {
   const Relations kept = finder.kept();
   EXPECT_GT(kept.list.size(), 15u);
   for (const Relation& r : kept.list)
-    EXPECT_LT(linearize(finder.sketch(), kept, r).residual.norm(), 4 * r.sigma)
+    EXPECT_LT(linearize(finder.weigher().sketch(), kept, r).residual.norm(), 4 * r.sigma)
         << relation_name(r.kind) << " of stroke " << r.stroke;
 }
 

@@ -41,15 +41,22 @@ Cylinder cylinder() {
   across << x.transpose(), y.transpose();
   for (int i = 0; i < 4; ++i) {
     const double sign = stroke_direction(c.sketch, i).dot(axis) < 0 ? -1 : 1;
-    r.list.push_back({RelationKind::kParallel, 0, -1, i, -1, across, sign, 100, 0.05});
-    if (i > 0) r.list.push_back({RelationKind::kCoaxial, 3, -1, i, -1, across, 1, 100, 0.05});
+    r.list.push_back({RelationKind::kParallel, 0, -1, i, -1, -1, across, sign, 100, 0.05});
+    if (i > 0) r.list.push_back({RelationKind::kCoaxial, 3, -1, i, -1, -1, across, 1, 100, 0.05});
     if (i == 1 || i == 2)
-      r.list.push_back({RelationKind::kEqualRadius, 4, -1, i, -1, across, 1, 100, 0.05});
+      r.list.push_back({RelationKind::kEqualRadius, 4, -1, i, -1, -1, across, 1, 100, 0.05});
   }
   const int handle = int(c.sketch.nodes.cols()) + c.sketch.strokes[3].handle;
   for (int point : {0, 2, 3, handle})
-    r.list.push_back({RelationKind::kCoplanar, 2, -1, -1, point, across, 1, 100, 0.05});
-  r.list.push_back({RelationKind::kPerpendicular, 0, 1, -1, -1, across, 1, 100, 0.05});
+    r.list.push_back({RelationKind::kCoplanar, 2, -1, -1, point, -1, across, 1, 100, 0.05});
+  r.list.push_back({RelationKind::kPerpendicular, 0, 1, -1, -1, -1, across, 1, 100, 0.05});
+  // Two points that mirror one another in the plane.
+  const int a = c.sketch.add_node(centre + 0.2 * x + 0.3 * axis),
+            b = c.sketch.add_node(centre + 0.2 * x - 0.3 * axis);
+  c.sketch.add_stroke(StrokeKind::kLine, a, b, {});
+  for (Relation& relation : r.list)
+    if (relation.point >= 6) relation.point += 2;  // a handle
+  r.list.push_back({RelationKind::kSymmetric, 2, -1, -1, a, b, across, 1, 100, 0.05});
   return c;
 }
 
