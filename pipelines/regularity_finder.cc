@@ -36,7 +36,7 @@ Vector3d RegularityFinder::place_of(int point) const {
 
 // Remembers who keeps to a quantity.
 void RegularityFinder::hold(int shared, const Relation& r) {
-  held_.resize(weigher_.num_shared());
+  held_.resize(std::max<size_t>(held_.size(), weigher_.num_shared()));
   held_[shared].insert(r.stroke >= 0 ? r.stroke : r.point);
   if (r.twin >= 0) held_[shared].insert(r.twin);
 }
@@ -194,13 +194,14 @@ std::vector<Candidate> RegularityFinder::points_across(const Direction& directio
     if (is_closed(sketch().strokes[i].kind)) points.insert(nodes + sketch().strokes[i].handle);
   std::vector<Candidate> out;
   const Vector3d normal = weigher_.shared(direction.shared).value;
+  const SharedQuantity plane = {SharedKind::kPlane, direction.shared, Vector3d::Zero()};
   for (int p : points) {
     Candidate c;
     c.relation.kind = RelationKind::kCoplanar;
     c.relation.point = p;
     c.relation.scale = 1 / weigher_.unit();
     c.value[0] = normal.dot(place_of(p) - weigher_.relations().origin);
-    c.sigma = weigher_.ask(c.relation, {SharedKind::kPlane, direction.shared, {}}).sigma;
+    c.sigma = weigher_.ask(c.relation, plane).sigma;
     c.range = weigher_.extent() / weigher_.unit();
     if (is_sure(c)) out.push_back(c);
   }

@@ -106,6 +106,7 @@ TEST(Regularize, EdgesOfANoisyBoxBecomeParallelAndComeNearerToTheTruth) {
     EXPECT_LT(after, 0.01) << seed;
     EXPECT_EQ(count_of(p.bound, RelationKind::kParallel, 4), 3) << seed;
     EXPECT_EQ(count_of(p.bound, RelationKind::kPerpendicular, 8), 3) << seed;
+    EXPECT_EQ(count_of(p.bound, RelationKind::kCoplanar, 4), 6) << seed;
     free += error_of(p.free, truth), bound += error_of(p.bound.sketch, truth);
   }
   EXPECT_LT(bound, 0.8 * free);
