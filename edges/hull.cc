@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "edges/lift.h"
 
@@ -52,17 +53,24 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
   const Eigen::Vector3d n = (world.bounds.sizes() / cell_).array().ceil();
   nx_ = std::max(1, int(n.x())), ny_ = std::max(1, int(n.y())), nz_ = std::max(1, int(n.z()));
   occupied_.assign(size_t(nx_) * ny_ * nz_, 0);
-  const auto in_all_masks = [&](const Eigen::Vector3d& p, double radius) {
+  // `open`: views that cut what lies around here; `cut`, if there, those that cut this.
+  const auto in_all_masks = [&](const Eigen::Vector3d& p, double radius,
+                                const std::vector<int>& open, std::vector<int>* cut) {
     Share least = kAll;
-    for (size_t m = 0; m < masked.size(); ++m) {
+    for (const int m : open) {
       const View& v = world.views[masked[m]];
       double z;
       const Eigen::Vector2d q = v.project(p, &z);
-      if (z > 0) least = std::min(least, share(sums[m], q.x(), q.y(), radius * v.camera.fx / z));
-      if (least == kNone) break;
+      if (!(z > 0)) continue;
+      const Share here = share(sums[m], q.x(), q.y(), radius * v.camera.fx / z);
+      if (here == kNone) return kNone;
+      if (here == kSome && cut) cut->push_back(m);
+      least = std::min(least, here);
     }
     return least;
   };
+  std::vector<int> all(masked.size());
+  std::iota(all.begin(), all.end(), 0);
   // Blocks of cells first: most of space is empty, most of the rest deep inside.
   constexpr int kBlock = 4;
   const double half_diagonal = 0.87;  // of a cell, half the square root of 3
@@ -72,14 +80,15 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
       for (int i0 = 0; i0 < nx_; i0 += kBlock) {
         const Eigen::Vector3d middle =
             low_ + cell_ * (Eigen::Vector3d(i0, j0, k0) + Eigen::Vector3d::Constant(kBlock / 2.0));
-        const Share block = in_all_masks(middle, kBlock * half_diagonal * cell_);
+        std::vector<int> cut;
+        const Share block = in_all_masks(middle, kBlock * half_diagonal * cell_, all, &cut);
         if (block == kNone) continue;
         for (int k = k0; k < std::min(nz_, k0 + kBlock); ++k)
           for (int j = j0; j < std::min(ny_, j0 + kBlock); ++j)
             for (int i = i0; i < std::min(nx_, i0 + kBlock); ++i) {
               const Eigen::Vector3d p = low_ + cell_ * Eigen::Vector3d(i + .5, j + .5, k + .5);
               occupied_[(size_t(k) * ny_ + j) * nx_ + i] =
-                  block == kAll ? kAll : in_all_masks(p, half_diagonal * cell_);
+                  block == kAll ? kAll : in_all_masks(p, half_diagonal * cell_, cut, nullptr);
             }
       }
 }
