@@ -186,25 +186,41 @@ TEST(Select, SaysWhyAStrokeFalls) {
   EXPECT_STREQ(verdict_name(Verdict::kRedundant), "redundant");
 }
 
-TEST(Select, WhatAFewViewsSeeAndManyMustSeeIsNoEdge) {
-  // A mark in the middle of a face, in 5 of some 30 views that look at this face.
-  Sketch s = cube();
-  const int mark = add_line(&s, {0.35, 0.45, 0.8}, {0.65, 0.55, 0.8});
-  for (bool everybody : {false, true}) {
-    const std::vector<View> views = ring_of_views(70, kMiddle, 3);
+// A mark in the middle of a face that every n-th of the views that look at this face sees.
+struct Marked {
+  Sketch sketch = cube();
+  int mark = add_line(&sketch, {0.35, 0.45, 0.8}, {0.65, 0.55, 0.8});
+  EdgeWorld world;
+  Marked(int num_views, int every) {
+    const std::vector<View> views = ring_of_views(num_views, kMiddle, 3);
     std::vector<EdgelMap> maps;
     for (const View& v : views) {
       std::vector<Polyline> seen = polylines_of(cube());
       const bool in_front = v.center_in_world().z() > 1.2;
-      if (in_front && (everybody || maps.size() % 6 == 0)) seen.push_back(polyline_of(s, mark));
+      if (in_front && maps.size() % every == 0) seen.push_back(polyline_of(sketch, mark));
       maps.push_back(ideal_edgels(v, seen));
       maps.back().mask = convex_mask(v, cube_corners({0.2, 0.2, 0.2}, 0.6));
     }
-    const Selection out = select_strokes(s, make_edge_world(views, maps), {});
-    EXPECT_EQ(out.verdicts[mark], everybody ? Verdict::kKept : Verdict::kUnseen);
-    EXPECT_EQ(out.sketch.size(), everybody ? 13 : 12);
+    world = make_edge_world(views, maps);
+  }
+};
+
+TEST(Select, WhatAFewViewsSeeAndManyMustSeeIsNoEdge) {
+  for (int every : {1, 6}) {
+    const Marked m(70, every);
+    const Selection out = select_strokes(m.sketch, m.world, {});
+    EXPECT_EQ(out.verdicts[m.mark], every == 1 ? Verdict::kKept : Verdict::kUnseen);
+    EXPECT_EQ(out.sketch.size(), every == 1 ? 13 : 12);
     EXPECT_GT(out.seen[0], 0.8);
   }
+}
+
+TEST(Select, WhatLiesStillInManyViewsIsAnEdgeUnlessItIsHardlyEverSeen) {
+  const Marked m(150, 6);  // in ten of some sixty
+  SelectOptions options;
+  EXPECT_EQ(select_strokes(m.sketch, m.world, options).verdicts[m.mark], Verdict::kKept);
+  options.min_seen = 0.8;  // an eighth is hardly ever then
+  EXPECT_EQ(select_strokes(m.sketch, m.world, options).verdicts[m.mark], Verdict::kUnseen);
 }
 
 TEST(Select, OfNothingIsNothing) {
