@@ -91,7 +91,6 @@ void list_topology(TopologyOptions* o, Fields* f) {
   f->add("merge-offset", &o->offset_px, "px", 0, 100, "Offset between pieces of one line");
   f->add("merge-joint", &o->joint_px, "px", 0, 100,
          "Of both pieces from the curve that replaces them");
-  f->add("simplify-kind", &o->kind_px, "px", 0, 100, "Of a curve from the simpler one");
 }
 
 void list_polish(PolishOptions* o, Fields* f) {
@@ -201,9 +200,11 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_link(&o->link, f);
   list_segment(&o->segment, f);
   f->group("Kinds of strokes");
+  f->add("conics", &o->segment.conics,
+         "Try arcs, circles and ellipses, not lines and cubics alone");
+  f->add("rewrite", &o->rechain.on, "Describe chains of strokes anew, in the fewest words");
   f->add("joint-sigma", &o->rechain.sigma_px, "px", 0.01, 10,
          "Least standard deviation of what all views say of a place");
-  f->add("kind-keep", &o->kinds.keep, "", 0, 2, "Share of its edgels a simpler curve must explain");
   list_select(&o->select, f);
   list_extent(&o->extent, f);
   list_optimize(&o->optimize, f);
@@ -215,6 +216,7 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("early-polish", &o->early_polish,
          "Least squares on the edgels in the fit and between the rounds, too");
   f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
+  f->add("close", &o->close.on, "Close gaps, loose ends and circles at last");
   f->add("regularize", &o->regularize.on,
          "Let strokes share directions, planes, axes and radii where that is simpler");
   f->add("min-confidence", &o->min_confidence, "", 0, 1, "Less probable strokes are left out");

@@ -12,7 +12,6 @@
 #include "pipelines/detectors.h"
 #include "pipelines/extent.h"
 #include "pipelines/fields.h"
-#include "pipelines/kinds.h"
 #include "pipelines/optimize.h"
 #include "pipelines/polish.h"
 #include "pipelines/rechain.h"
@@ -41,7 +40,6 @@ struct ReconstructOptions : DetectionOptions {
   LiftOptions lift;
   LinkOptions link;
   SegmentOptions segment;
-  KindOptions kinds;
   SelectOptions select;
   ExtentOptions extent;
   OptimizeOptions optimize;

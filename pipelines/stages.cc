@@ -8,7 +8,6 @@
 #include "edges/link.h"
 #include "pipelines/confidence.h"
 #include "pipelines/detectors.h"
-#include "pipelines/kinds.h"
 #include "pipelines/observe.h"
 #include "pipelines/propose.h"
 #include "sketches/curve_chain.h"
@@ -121,6 +120,7 @@ void count_regularities(const Regularized& regular, RunReport* report) {
 
 // Chains of strokes in as few words as their edgels allow.
 Sketch rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
+  if (!options.rechain.on) return sketch;
   const Spliced spliced = splice(sketch, world, options.splice);
   const Rechained r = rechain(spliced.sketch, world, options.segment, options.rechain);
   const bool changed = spliced.overlaps + spliced.gaps + r.changes > 0;
@@ -132,8 +132,8 @@ Sketch rewritten(const Sketch& sketch, const EdgeWorld& world, const Reconstruct
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
                    const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("fit", 0, report, progress);
-  Sketch first = polish(initial_sketch(points, world.footprint, options), world, early(options));
-  first = choose_kinds(first, world, early(options), options.kinds);
+  const Sketch first =
+      polish(initial_sketch(points, world.footprint, options), world, early(options));
   const Selection selection = select_strokes(first, world, options.select);
   note_verdicts(first, selection, progress);
   const Sketch& chosen = selection.sketch;
@@ -215,7 +215,8 @@ int drop_unsure(const Observation& observation, const EdgeWorld& world, double l
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
-  const Closed closed = close_graph(sketch, world, options.close);
+  const Closed closed =
+      options.close.on ? close_graph(sketch, world, options.close) : Closed{sketch};
   Sketch out = closed.sketch;
   Regularized regular;
   if (options.final_polish) {

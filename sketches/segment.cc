@@ -68,6 +68,7 @@ class Cutter {
     RunPiece out;
     out.first = a, out.last = b, out.cost = kHopeless;
     if (!closed) consider(line_through(p), &out);
+    if (!options_.conics) return out;
     // Not worth a look if the parameters alone cost more.
     if (b - a >= 5 && out.cost > price(StrokeKind::kArc))
       consider(arc_through(p, t, closed, kClosing * unit_), &out);

@@ -15,7 +15,8 @@ struct SegmentOptions {
   double corner_deg = 25.0;  ///< [deg] turn from point to point that ends a piece
   int min_points = 3;        ///< shorter pieces are dropped
   double min_length = 4.0;   ///< times `unit`: so are these
-  bool elliptic = true;      ///< arcs of ellipses are tried
+  bool conics = true;        ///< arcs, circles and ellipses are tried, not lines and cubics alone
+  bool elliptic = true;      ///< arcs of ellipses are, too
 };
 
 /// Parameters of a curve that goes on from the one before it: where it ends and how it bends.

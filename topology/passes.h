@@ -20,7 +20,6 @@ struct TopologyOptions {
   double offset_px = 1.5;         ///< of the shorter line's ends from the longer line
   double joint_px = 1;            ///< of both pieces from the one curve that replaces them
   double joint_angle_deg = 10;    ///< between tangents where two pieces face each other
-  double kind_px = 0.5;           ///< of a curve from the simpler one that replaces it
 
   double min_opacity = 0;     ///< see remove_low_opacity
   int min_support_views = 0;  ///< see visibility_filter
@@ -55,10 +54,6 @@ PassResult merge_overlaps(const Sketch& sketch, const TopologyOptions& options);
 ///   arc or else one cubic; line + arc or bezier -> the same if the line is short (a third).
 /// Never through a node that other strokes share, nor over a gap where another stroke ends.
 PassResult merge_collinear(const Sketch& sketch, const TopologyOptions& options);
-
-/// A curve becomes one with fewer parameters that keeps within `kind_px`: arc or cubic -> line,
-/// cubic -> arc, closed cubic or arc with a small gap -> circle, ellipse with equal axes -> circle.
-PassResult simplify_kinds(const Sketch& sketch, const TopologyOptions& options);
 
 /// Removes strokes whose opacity is below the threshold, or NaN.
 PassResult remove_low_opacity(const Sketch& sketch, double min_opacity);

@@ -8,8 +8,11 @@ constexpr int kMaxRounds = 20;
 }
 
 std::vector<std::pair<std::string, int>> SimplifyCounts::named() const {
-  return {{"low_opacity", low_opacity}, {"unseen", unseen},       {"kinds", kinds},
-          {"overlaps", overlaps},       {"collinear", collinear}, {"endpoints", endpoints}};
+  return {{"low_opacity", low_opacity},
+          {"unseen", unseen},
+          {"overlaps", overlaps},
+          {"collinear", collinear},
+          {"endpoints", endpoints}};
 }
 
 Simplified simplify(const Sketch& sketch, const TopologyOptions& options) {
@@ -28,7 +31,6 @@ Simplified simplify(const Sketch& sketch, const TopologyOptions& options) {
     before = n.total();
     take(remove_low_opacity(out.sketch, options.min_opacity), &n.low_opacity);
     take(visibility_filter(out.sketch, options.min_support_views, options.max_rms_px), &n.unseen);
-    take(simplify_kinds(out.sketch, options), &n.kinds);
     take(merge_overlaps(out.sketch, options), &n.overlaps);
     take(merge_collinear(out.sketch, options), &n.collinear);
     take(merge_endpoints(out.sketch, options), &n.endpoints);

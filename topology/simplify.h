@@ -11,10 +11,10 @@ namespace sketchsplat {
 
 /// Changes made by each pass, over all rounds.
 struct SimplifyCounts {
-  int low_opacity = 0, unseen = 0, kinds = 0, overlaps = 0, collinear = 0, endpoints = 0;
+  int low_opacity = 0, unseen = 0, overlaps = 0, collinear = 0, endpoints = 0;
   int rounds = 0;  ///< including the last one, which changed nothing
 
-  int total() const { return low_opacity + unseen + kinds + overlaps + collinear + endpoints; }
+  int total() const { return low_opacity + unseen + overlaps + collinear + endpoints; }
   /// For reports: name and count of each pass, in the order in which they run.
   std::vector<std::pair<std::string, int>> named() const;
 };
@@ -26,8 +26,8 @@ struct Simplified {
   bool settled = true;  ///< false if the bound on rounds was reached while things still changed
 };
 
-/// Runs all passes in rounds until nothing changes: what has no evidence goes first, then kinds
-/// (cubics that are lines can be merged as lines), doubles, pieces of one curve (before their short
+/// Runs all passes in rounds until nothing changes: what has no evidence goes first, then
+/// doubles, pieces of one curve (before their short
 /// ends are taken for noise), and end points last, when few are left.
 Simplified simplify(const Sketch& sketch, const TopologyOptions& options);
 

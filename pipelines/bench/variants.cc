@@ -19,7 +19,10 @@ std::vector<BenchVariant> ablation_variants() {
                                             no_visibility = {"visibility", "false"},
                                             no_early = {"early-polish", "false"},
                                             no_final = {"final-polish", "false"},
-                                            no_regular = {"regularize", "false"};
+                                            no_regular = {"regularize", "false"},
+                                            no_conics = {"conics", "false"},
+                                            no_rewrite = {"rewrite", "false"},
+                                            no_closing = {"close", "false"};
   return {
       {"lift and fit only", {no_early, no_final, no_rounds}},
       {"+ raster rounds", {no_early, no_final, no_topology, no_visibility}},
@@ -33,6 +36,9 @@ std::vector<BenchVariant> ablation_variants() {
       {"all but topology", {no_topology}},
       {"all but visibility", {no_visibility}},
       {"all but final polish", {no_final}},
+      {"all but conics", {no_conics}},
+      {"all but rewriting", {no_rewrite}},
+      {"all but closing", {no_closing}},
   };
 }
 

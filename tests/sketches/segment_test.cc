@@ -238,6 +238,15 @@ TEST(SegmentChain, ASlotIsTwoLinesAndTwoArcsWhereverTheRunBegins) {
   }
 }
 
+TEST(CutRun, WithoutConicsARoundRunIsCubics) {
+  Points p;
+  p.add_curve(on_circle, 0, 300, 60);
+  SegmentOptions options;
+  options.conics = false;
+  for (const RunPiece& piece : cut_run(p.points, p.tangents, false, 0.2 * kUnit, kUnit, options))
+    EXPECT_EQ(piece.fit.kind, StrokeKind::kBezier);
+}
+
 TEST(CutRun, AHigherPriceNeverBuysMoreCurves) {
   Points run;
   run.add_curve([](double t) { return Vector3d(t, 0.15 * std::sin(7 * t), 0.1 * t * t); }, 0, 1,

@@ -74,16 +74,6 @@ TEST(EllipticArcs, DrawnTwiceBecomeOne) {
   EXPECT_LT(off_ellipse(r.sketch, 0), 0.5);
 }
 
-TEST(EllipticArcs, ThatAreRoundBecomeArcsAndOthersDoNot) {
-  Sketch round, slender, flat;
-  add_elliptic(&round, 50 * Vector3d::UnitX(), 50.5 * Vector3d::UnitY(), 20, 140);
-  add_elliptic(&slender, kU, kV, 20, 140);
-  add_elliptic(&flat, 900 * Vector3d::UnitX(), 800 * Vector3d::UnitY(), 0, 3);
-  EXPECT_EQ(simplify_kinds(round, one_pixel()).sketch.strokes[0].kind, StrokeKind::kArc);
-  EXPECT_EQ(simplify_kinds(slender, one_pixel()).sketch.strokes[0].kind, StrokeKind::kEllipticArc);
-  EXPECT_EQ(simplify_kinds(flat, one_pixel()).sketch.strokes[0].kind, StrokeKind::kLine);
-}
-
 TEST(EllipticArcs, KeepTheirShapeWhenTheirEndsMove) {
   Sketch s;
   add_elliptic(&s, kU, kV, 20, 170);
