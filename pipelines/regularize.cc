@@ -67,7 +67,7 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
   const SampleQuadratics q =
       moved_to(now, seen.samples, whitened(seen, options.sigma_px, footprint), &cost);
   const SketchQuadratic all = sketch_quadratic(sketch, seen.layout, q);
-  const RefineSketchResult free = refine_sketch(sketch, seen.layout, q);
+  const RefineSketchResult free = refine_sketch(sketch, seen.layout, q, options.refine);
   // It was decided on a linear view. If the whole is no shorter, relations of conics are to blame,
   // most likely, which bend most: the last ones.
   for (int stages = 6; stages > 0; --stages) {
@@ -80,7 +80,7 @@ Regularized regularize(const Sketch& sketch, const Observation& seen, double foo
     const Samples linear = evaluate_samples(finder.weigher().sketch(), seen.layout);
     const SampleQuadratics there = moved_to(linear, now, q, &cost);
     const RefineSketchResult bound =
-        refine_sketch(finder.weigher().sketch(), seen.layout, there, {}, &relations);
+        refine_sketch(finder.weigher().sketch(), seen.layout, there, options.refine, &relations);
     const double saved = finder.weigher().gain() - (cost + bound.final_cost - free.final_cost) / 2;
     if (!(saved > 0)) continue;
     out.nats_saved = saved;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pipelines/observe.h"
+#include "sketches/refine_sketch.h"
 #include "sketches/relations.h"
 
 namespace sketchsplat {
@@ -16,7 +17,8 @@ struct RegularizeOptions {
   /// Multiplications that finding may cost, about: hundreds of strokes that have nothing in common
   /// would cost minutes. Beyond it, fewer kinds of relations are looked for, or none.
   double most_work = 3e8;
-  double soft_share = 0.1;  ///< and as a share of that of the stroke itself
+  double soft_share = 0.1;     ///< and as a share of that of the stroke itself
+  RefineSketchOptions refine;  ///< its weights in squared standard deviations
 };
 
 struct Regularized {

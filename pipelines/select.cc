@@ -10,7 +10,9 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kSeldom = 0.25;  // of min_seen: what is seen less often is no edge, however still
+// Of min_seen, and of the edgels: what is seen less often, and on the outline alone, may well be a
+// contour.
+constexpr double kSeldom = 0.25, kOutline = 0.9;
 
 // Width of sharp edges in these images: lower quartile over the well supported strokes' edgels.
 double sharp_width(const Observation& o, int min_views) {
@@ -96,9 +98,9 @@ Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
   if (s.bias_px > options.max_bias_px + sigma) return Verdict::kMoving;
   if (sharp > 0 && s.width_px > options.max_width * sharp) return Verdict::kBlurred;
   // What lies dead still in many views is no contour, though its two sides look alike in others.
-  const bool missing = seen >= 0 && seen < kSeldom * options.min_seen;
-  if (!missing && s.views >= 2 * options.min_views && s.rms_px <= options.max_rms_px &&
-      s.bias_px <= 0.5 * (options.max_bias_px + sigma))
+  const bool suspect = seen >= 0 && seen < kSeldom * options.min_seen && s.outline > kOutline;
+  const double still = (suspect ? 0.25 : 0.5) * (options.max_bias_px + sigma);
+  if (s.views >= 2 * options.min_views && s.rms_px <= options.max_rms_px && s.bias_px <= still)
     return Verdict::kKept;
   const double moves = std::max(0.0, s.bias_px - sigma) / options.max_bias_px;
   if (seen >= 0 && seen < options.min_seen * (1 + moves)) return Verdict::kUnseen;

@@ -2,6 +2,7 @@
 #include "pipelines/stages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "datasets/errors.h"
@@ -104,6 +105,10 @@ RegularizeOptions regularize_options(const ReconstructOptions& options) {
   RegularizeOptions regularize = options.regularize;
   regularize.price = options.segment.price;
   regularize.sigma_px = options.rechain.sigma_px;
+  const double degree = M_PI / 180;
+  regularize.refine.smooth_angle = options.polish.smooth_deg * degree;
+  regularize.refine.smooth_weight =
+      std::pow(1 / (kSmoother * options.polish.smooth_sigma_deg * degree), 2);
   return regularize;
 }
 

@@ -8,6 +8,7 @@
 #include "pipelines/polish.h"
 #include "pipelines/regularity_finder.h"
 #include "sketches/conic.h"
+#include "sketches/smooth_joint.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {
@@ -180,6 +181,27 @@ TEST(Regularize, HolesThatMirrorOneAnotherAreSymmetricOthersAreNot) {
     EXPECT_TRUE(together(p.bound, RelationKind::kSymmetric, 2, 7)) << off;
     EXPECT_EQ(together(p.bound, RelationKind::kSymmetric, 8, 9), off == 0);
   }
+}
+
+TEST(Regularize, CubicsThatGoOnSmoothlyStillDoSo) {
+  Sketch truth = box();
+  const int n = truth.add_node({0.2, 0.4, 0.9}), m = truth.add_node({0.5, 0.5, 0.9}),
+            e = truth.add_node({0.8, 0.4, 0.9});
+  truth.add_stroke(StrokeKind::kBezier, n, m, {Vector3d(0.3, 0.3, 0.9), Vector3d(0.4, 0.5, 0.9)});
+  truth.add_stroke(StrokeKind::kBezier, m, e, {Vector3d(0.6, 0.5, 0.9), Vector3d(0.7, 0.3, 0.9)});
+  Observation last;
+  PolishOptions polish_options;
+  polish_options.smooth_sigma_deg = 0.02;
+  const EdgeWorld world = noisy_world(truth, 8, 5);
+  const Sketch free = polish(truth, world, polish_options, &last);
+  RegularizeOptions options;
+  options.refine.smooth_angle = 0.1;
+  options.refine.smooth_weight = std::pow(1 / (0.02 * M_PI / 180), 2);
+  const Regularized bound = regularize(free, last, world.footprint, options);
+  EXPECT_GT(bound.relations, 0);
+  const std::vector<SmoothJoint> joints = find_smooth_joints(bound.sketch, 0.2);
+  ASSERT_EQ(joints.size(), 1u);
+  EXPECT_LT(joints[0].angle, 0.1 * M_PI / 180);
 }
 
 // Lines and rings anywhere; radii five pixels apart, as two that agree by chance are equal to all
