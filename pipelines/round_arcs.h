@@ -8,7 +8,7 @@
 namespace sketchsplat {
 
 struct RoundOptions {
-  double least_turn = 0.6;  ///< share of a turn from which arcs may be all of it
+  double least_turn = 0.4;  ///< share of a turn from which arcs may be all of it
   double aside_px = 1;      ///< [px] of two arcs from their common ellipse
   double circle_px = 0.5;   ///< [px] between an ellipse and the circle that it is
 };
