@@ -17,6 +17,7 @@ constexpr double kOutlier = 8;     // [nat]
 constexpr double kRound = 0.25;    // [unit] what lies nearer to its circle is no ellipse
 constexpr double kClosing = 6;     // [unit] gap that a circle closes
 constexpr int kMostCuts = 24;      // candidates of a run
+constexpr int kTries = 4;          // on either side of a cut, at each step
 constexpr double kHopeless = 1e9;  // [nat] of points that no curve can be fitted to
 
 // Distance that 9 in 10 points keep.
@@ -135,30 +136,40 @@ class Cutter {
     return out;
   }
 
-  // The same kind of curve for points [a, b), or for no cubic the best of the others.
-  RunPiece again(const RunPiece& piece, int a, int b) const {
-    return piece.fit.kind == StrokeKind::kBezier ? cubic(a, b) : plain(a, b, false);
+  // Moves every cut to where its two curves, of whatever kind, cost least.
+  void settle(std::vector<RunPiece>* pieces) const {
+    std::vector<RunPiece>& p = *pieces;
+    for (size_t k = p.size(); k-- > 1;) p[k].cost += saving_after(p[k - 1], p[k]);
+    const int reach = p.empty() ? 0 : (p.back().last - p[0].first) / kMostCuts + 1;
+    for (int sweep = 0; sweep < 2; ++sweep)
+      for (size_t k = 0; k + 1 < p.size(); ++k) settle(k, reach, &p);
+    for (size_t k = p.size(); k-- > 1;) p[k].cost -= saving_after(p[k - 1], p[k]);
   }
 
-  // Moves every cut to where its two curves cost least.
-  void settle(std::vector<RunPiece>* pieces) const {
-    for (size_t k = 0; k + 1 < pieces->size(); ++k) {
-      RunPiece &x = (*pieces)[k], &y = (*pieces)[k + 1];
-      for (int step = std::max(1, (y.last - x.first) / (2 * kMostCuts)); step > 0; step /= 2)
-        for (int way : {-step, step})
-          while (true) {
-            const int cut = y.first + way;
-            if (cut + 1 - x.first < options_.min_points || y.last - cut < options_.min_points)
-              break;
-            RunPiece u = again(x, x.first, cut + 1), v = again(y, cut, y.last);
-            if (follows(x, y)) v.cost -= saving();
-            if (k > 0 && follows((*pieces)[k - 1], x)) u.cost -= saving();
-            if (!(u.cost + v.cost < x.cost + y.cost - 1e-9)) break;
-            x = std::move(u), y = std::move(v);
-          }
+  void settle(size_t k, int reach, std::vector<RunPiece>* pieces) const {
+    std::vector<RunPiece>& p = *pieces;
+    const int first = p[k].first, last = p[k + 1].last;
+    const auto cost = [&](const RunPiece& x, const RunPiece& y) {
+      return x.cost + y.cost - saving_after(x, y) - (k > 0 ? saving_after(p[k - 1], x) : 0) -
+             (k + 2 < p.size() ? saving_after(y, p[k + 2]) : 0);
+    };
+    double least = cost(p[k], p[k + 1]);
+    for (int step = std::max(1, reach / kTries);; step /= 2) {
+      const int middle = p[k + 1].first;
+      for (int t = -kTries; t <= kTries; ++t) {
+        const int at = middle + t * step;
+        if (at + 1 - first < options_.min_points || last - at < options_.min_points) continue;
+        RunPiece x = best(first, at + 1, false), y = best(at, last, false);
+        const double here = cost(x, y);
+        if (here < least - 1e-9) least = here, p[k] = std::move(x), p[k + 1] = std::move(y);
+      }
+      if (step == 1) return;
     }
   }
 
+  double saving_after(const RunPiece& x, const RunPiece& y) const {
+    return follows(x, y) ? saving() : 0;
+  }
   static bool follows(const RunPiece& x, const RunPiece& y) {
     return x.fit.kind == StrokeKind::kBezier && y.fit.kind == StrokeKind::kBezier;
   }

@@ -238,6 +238,37 @@ TEST(SegmentChain, ASlotIsTwoLinesAndTwoArcsWhereverTheRunBegins) {
   }
 }
 
+TEST(CutRun, SmallRoundsOfALongOutlineAreRoundNotCubics) {
+  // Half-lengths of a rectangle's sides between its rounds, of radius r.
+  const double r = 0.09, a = 0.4, b = 0.31, quarter = M_PI * r / 2;
+  const double around = 4 * (a + b + quarter);
+  const auto outline = [&](double s) -> Vector3d {
+    s = std::fmod(s, around);
+    const double side = s < around / 2 ? 1 : -1;
+    s = std::fmod(s, around / 2);
+    if (s < 2 * a) return side * Vector3d(a - s, b + r, 0);
+    s -= 2 * a;
+    if (s < quarter) return side * Vector3d(-a - r * std::sin(s / r), b + r * std::cos(s / r), 0);
+    s -= quarter;
+    if (s < 2 * b) return side * Vector3d(-a - r, b - s, 0);
+    s -= 2 * b;
+    return side * Vector3d(-a - r * std::cos(s / r), -b - r * std::sin(s / r), 0);
+  };
+  for (double start : {0.0, 0.13, 0.37}) {
+    Points run;
+    run.add_curve(outline, start, start + 0.995 * around, 120);
+    int round = 0, cubics = 0, lines = 0;
+    for (const RunPiece& p : cut_run(run.points, run.tangents, true, 0.1 * kUnit, kUnit, {})) {
+      const StrokeKind kind = p.fit.kind;
+      round += kind == StrokeKind::kArc || kind == StrokeKind::kEllipticArc;
+      cubics += kind == StrokeKind::kBezier, lines += kind == StrokeKind::kLine;
+    }
+    EXPECT_EQ(round, 4) << start;
+    EXPECT_EQ(cubics, 0) << start;
+    EXPECT_NEAR(lines, 4, 1) << start;  // one may be cut where the run is opened
+  }
+}
+
 TEST(CutRun, WithoutConicsARoundRunIsCubics) {
   Points p;
   p.add_curve(on_circle, 0, 300, 60);
