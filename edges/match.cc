@@ -59,16 +59,27 @@ void drop_accidents(const CurvePoints& samples, const MatchOptions& options,
 }
 
 // Leaves every edgel to the curve that lies nearest to it.
-void make_exclusive(const CurvePoints& samples, size_t num_edgels,
+void make_exclusive(const CurvePoints& samples, size_t num_edgels, bool between,
                     std::vector<SampleMatch>* matches) {
+  constexpr int kFarthest = 6;  // edgels from sample to sample: more is another chain
   std::vector<int> curve_of(samples.position.cols());
   for (size_t c = 0; c + 1 < samples.first.size(); ++c)
     for (int i = samples.first[c]; i < samples.first[c + 1]; ++i) curve_of[i] = int(c);
   std::vector<int> owner(num_edgels, -1);
   std::vector<float> best(num_edgels, 1e9f);
-  for (const SampleMatch& m : *matches) {
+  for (size_t k = 0; k < matches->size(); ++k) {
+    const SampleMatch& m = (*matches)[k];
+    const int curve = curve_of[m.sample];
+    int low = m.edgel, high = m.edgel;
+    if (between && k + 1 < matches->size()) {
+      const SampleMatch& next = (*matches)[k + 1];
+      if (next.sample == m.sample + 1 && curve_of[next.sample] == curve &&
+          std::abs(next.edgel - m.edgel) <= kFarthest)
+        low = std::min(low, next.edgel), high = std::max(high, next.edgel);
+    }
     const float d = std::abs(m.distance_px);
-    if (d < best[m.edgel]) best[m.edgel] = d, owner[m.edgel] = curve_of[m.sample];
+    for (int e = low; e <= high; ++e)
+      if (d < best[e]) best[e] = d, owner[e] = curve;
   }
   matches->erase(
       std::remove_if(matches->begin(), matches->end(),
@@ -104,7 +115,8 @@ Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
   for (int v = 0; v < views; ++v) {
     by_view[v] = match_view(world, v, samples, options);
     drop_accidents(samples, options, &by_view[v]);
-    if (options.exclusive) make_exclusive(samples, world.maps[v].edgels.size(), &by_view[v]);
+    if (options.exclusive)
+      make_exclusive(samples, world.maps[v].edgels.size(), options.exclusive_between, &by_view[v]);
   }
   Matches out;
   out.first.assign(n + 1, 0);

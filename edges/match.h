@@ -22,6 +22,9 @@ struct MatchOptions {
   double max_bias =
       0;  ///< [px] a view whose median distance to a curve is larger does not count; 0: off
   bool exclusive = true;  ///< an edgel belongs to the curve that lies nearest to it
+  /// So do the edgels between those that neighbouring samples of a curve found: samples are farther
+  /// apart than edgels, and what lies beside a visible curve would find the others.
+  bool exclusive_between = false;
 };
 
 /// One edgel that a sample explains.

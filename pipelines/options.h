@@ -52,6 +52,7 @@ struct ReconstructOptions : DetectionOptions {
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
+  bool second_look = true;   ///< at the edgels that no stroke explains
   bool final_polish = true;  ///< end on the edgels themselves
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
 };

@@ -15,7 +15,7 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
   double sigma = 0;
   for (int round = 0; round < options.rounds && s.size() > 0; ++round) {
     MatchOptions match;
-    match.exclusive = options.exclusive;
+    match.exclusive = match.exclusive_between = options.exclusive;
     const bool coarse = round < std::min(2, options.rounds / 2);
     match.reach_px = coarse ? options.reach_px : std::max(options.final_reach_px, 4 * sigma);
     match.max_bias = coarse ? 0 : std::max(options.bias_px, 2 * sigma);

@@ -7,7 +7,8 @@
 namespace sketchsplat {
 
 // The method. Images become edgels, edgels points in space, points strokes; then rounds of drawing
-// the strokes into the views, moving them and simplifying the graph, until nothing changes.
+// the strokes into the views, moving them and simplifying the graph, until nothing changes; and the
+// same once more with what is found in the edgels that are left.
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
                            Progress* progress) {
   RunReport report;
@@ -22,6 +23,12 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
     const Round round = run_round(sketch, world, targets, options, &report, progress);
     sketch = round.sketch;
     if (options.simplify && !round.changed) break;
+  }
+  if (options.second_look) {
+    const Round again = look_again(sketch, world, options, &report, progress);
+    sketch = again.changed && options.rounds > 0
+                 ? run_round(again.sketch, world, targets, options, &report, progress).sketch
+                 : again.sketch;
   }
   sketch = finish_sketch(sketch, world, options, &report, progress);
   if (sketch.size() == 0)

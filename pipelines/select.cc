@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "edges/unexplained.h"
 #include "pipelines/observe.h"
 
 namespace sketchsplat {
@@ -34,7 +35,7 @@ double sharp_width(const Observation& o, int min_views) {
 struct Claim {
   int edgels = 0, views = 0;
 };
-Claim claim(const Observation& o, int stroke, const std::vector<std::vector<char>>& owned,
+Claim claim(const Observation& o, int stroke, const EdgelFlags& owned,
             std::vector<int>* per_view) {
   Claim c;
   std::fill(per_view->begin(), per_view->end(), 0);
@@ -53,7 +54,7 @@ Claim claim(const Observation& o, int stroke, const std::vector<std::vector<char
 // The edgels of a stroke are its own: those that its samples found, and their neighbours in the
 // chain, which samples of another stroke on the same edge may find.
 void own(const EdgeWorld& world, const Observation& o, int stroke,
-         std::vector<std::vector<char>>* owned) {
+         EdgelFlags* owned) {
   constexpr int kBeside = 1;  // samples lie two pixels apart, edgels one
   for (int i = o.matches.first[o.layout.first[stroke]];
        i < o.matches.first[o.layout.first[stroke + 1]]; ++i) {
@@ -66,8 +67,26 @@ void own(const EdgeWorld& world, const Observation& o, int stroke,
   }
 }
 
-// Share of the sightings that must be in which there is an edgel; -1 if none must be.
-double seen_share(const EdgeWorld& world, const Observation& o, int stroke) {
+// Share of a stroke's samples that enough views see by edgels that are not flagged.
+double own_cover(const Observation& o, int stroke, int min_views, const EdgelFlags& flagged) {
+  int covered = 0;
+  for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i) {
+    int views = 0;
+    for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m)
+      views += !flagged[o.matches.matches[m].view][o.matches.matches[m].edgel];
+    covered += views >= min_views;
+  }
+  return double(covered) / std::max(1, o.layout.first[stroke + 1] - o.layout.first[stroke]);
+}
+
+CurvePoints points_of(const Observation& o, int stroke) {
+  const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
+  return {o.samples.position.middleCols(first, n), o.samples.tangent.middleCols(first, n), {0, n}};
+}
+
+// Share of the sightings that must be in which there is an edgel; -1 if too few must be: the hull
+// errs at a corner here and there.
+double seen_share(const EdgeWorld& world, const Observation& o, int stroke, double min_sure) {
   constexpr int kEvery = 3;  // samples: the hull is coarse
   int sure = 0, seen = 0;
   std::vector<char> matched(world.views.size());
@@ -81,7 +100,8 @@ double seen_share(const EdgeWorld& world, const Observation& o, int stroke) {
         seen += matched[v];
       }
   }
-  return sure > 0 ? double(seen) / sure : -1;
+  const bool enough = sure >= min_sure * o.strokes[stroke].matches / kEvery;
+  return sure > 0 && enough ? double(seen) / sure : -1;
 }
 
 Verdict judge_extent(const StrokeStats& s, const SelectOptions& options) {
@@ -128,34 +148,41 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   const Observation every = observe(sketch, world, lone, 2.0, options.min_views);
   std::vector<double> seen(sketch.size());
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < sketch.size(); ++i) seen[i] = seen_share(world, every, i);
+  for (int i = 0; i < sketch.size(); ++i) seen[i] = seen_share(world, every, i, options.min_sure);
 
   std::vector<int> order(sketch.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return o.strokes[a].matches > o.strokes[b].matches; });
-  std::vector<std::vector<char>> owned;
-  for (const EdgelMap& m : world.maps) owned.emplace_back(m.edgels.size(), 0);
+  EdgelFlags owned = no_edgels(world), explained = owned;
   std::vector<int> per_view(world.views.size());
   Selection result;
   result.verdicts.resize(sketch.size());
   result.stats = o.strokes;
   std::vector<bool> keep(sketch.size());
   for (int i : order) {
-    result.verdicts[i] = judge_extent(o.strokes[i], options);
-    if (result.verdicts[i] != Verdict::kKept) continue;
-    const Claim c = claim(o, i, owned, &per_view);
-    if (c.views < options.min_views || c.edgels < options.min_own * o.strokes[i].matches) {
-      result.verdicts[i] = Verdict::kRedundant;
-      continue;
-    }
+    Verdict& verdict = result.verdicts[i];
+    const auto judge_by = [&](const EdgelFlags& others) {
+      result.stats[i] = summarise(world, o, i, options.min_views, &others);
+      verdict = judge(result.stats[i], seen[i], sharp, sigma, options);
+    };
+    verdict = judge_extent(o.strokes[i], options);
+    if (verdict != Verdict::kKept) continue;
     // Where two edges run side by side, the better one has explained its edgels already.
-    const StrokeStats s = summarise(world, o, i, options.min_views, &owned);
-    result.stats[i] = s;
-    result.verdicts[i] = judge(s, seen[i], sharp, sigma, options);
-    if (result.verdicts[i] != Verdict::kKept) continue;
+    const Claim c = claim(o, i, owned, &per_view);
+    if (c.views < options.min_views || c.edgels < options.min_own * o.strokes[i].matches)
+      verdict = Verdict::kRedundant;
+    else
+      judge_by(owned);
+    const bool crowded = verdict == Verdict::kRedundant || verdict == Verdict::kScattered ||
+                         verdict == Verdict::kMoving;
+    if (crowded && claim(o, i, explained, &per_view).views >= options.min_views &&
+        own_cover(o, i, options.min_views, explained) >= options.min_cover)
+      judge_by(explained);
+    if (verdict != Verdict::kKept) continue;
     keep[i] = true;
     own(world, o, i, &owned);
+    explain(world, points_of(o, i), {}, &explained);
   }
   result.sketch = keep_strokes(sketch, keep);
   int next = 0;

@@ -16,6 +16,7 @@ struct SelectOptions {
   double max_bias_px = 0.12;   ///< [px] offset in half of the views, beyond that scatter
   double max_width = 1.25;     ///< width of its edgels over that of the scene's sharp edges
   double min_seen = 0.22;      ///< share of the sure sightings with an edgel, if it lies still
+  double min_sure = 0.25;      ///< sure sightings that tell something, per sighting
   double min_length_px = 4.0;  ///< [px]
 };
 
@@ -40,7 +41,9 @@ struct Selection : PassResult {
 
 /// Keeps the fewest strokes that explain the edgels: best supported first, a stroke stays if enough
 /// of its edgels, in enough views, are explained by no stroke before it, and if it lies still in
-/// space (contours of curved surfaces move with the view) and is as sharp as edges here are.
+/// space (contours of curved surfaces move with the view) and is as sharp as edges here are. A
+/// stroke that few views see meets others' edgels in those that do not see it: where these would
+/// condemn it, it is judged by the edgels alone that lie beside no better stroke.
 Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
                          const SelectOptions& options);
 

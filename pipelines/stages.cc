@@ -7,6 +7,7 @@
 
 #include "datasets/errors.h"
 #include "edges/link.h"
+#include "edges/unexplained.h"
 #include "pipelines/confidence.h"
 #include "pipelines/detectors.h"
 #include "pipelines/observe.h"
@@ -18,6 +19,9 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kFewestViews = 3;
+constexpr int kSecondViews = 3;     // that agree on a point where nothing else is
+constexpr int kShortestRest = 8;    // edgels: shorter rests of chains are corners and noise
+constexpr double kLonger = 3;       // times the shortest stroke: the shortest that comes late
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
 
 }  // namespace
@@ -175,6 +179,43 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
   stage.result(std::to_string(round.sketch.size()) + " strokes");
   report->rounds.push_back(std::move(row));
   return round;
+}
+
+namespace {
+
+EdgeWorld rest_of(const EdgeWorld& world, const Sketch& sketch) {
+  const SampleLayout layout = plan_samples(sketch, 2 * world.footprint);
+  const Samples samples = evaluate_samples(sketch, layout);
+  EdgelFlags explained = no_edgels(world);
+  explain(world, {samples.position, samples.tangent, layout.first}, {}, &explained);
+  return unexplained(world, explained, kShortestRest);
+}
+
+}  // namespace
+
+Round look_again(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
+                 RunReport* report, Progress* progress) {
+  Stage stage("again", 0, report, progress);
+  const EdgeWorld rest = rest_of(world, sketch);
+  LiftOptions lift = options.lift;
+  lift.min_views = std::min(lift.min_views, kSecondViews);
+  const Sketch first = polish(initial_sketch(lift_edges(rest, lift), rest.footprint, options), rest,
+                              early(options));
+  const Sketch more = rewritten(grown(first, rest, options), rest, options);
+  Sketch both = sketch;
+  append_strokes(more, &both);
+  const Selection chosen = select_strokes(both, world, options.select);
+  std::vector<bool> keep(both.size(), true);
+  int added = 0;
+  for (int i = sketch.size(); i < both.size(); ++i) {
+    keep[i] = chosen.verdicts[i] == Verdict::kKept &&
+              chosen.stats[i].length_px >= kLonger * options.select.min_length_px;
+    added += keep[i];
+  }
+  report->counts.push_back({"strokes_lifted_again", double(more.size())});
+  report->counts.push_back({"strokes_added", double(added)});
+  stage.result(std::to_string(added) + " of " + std::to_string(more.size()) + " strokes stand");
+  return {keep_strokes(both, keep), added > 0};
 }
 
 namespace {

@@ -63,6 +63,22 @@ int Sketch::add_stroke(StrokeKind kind, int begin, int end,
   return size() - 1;
 }
 
+void append_strokes(const Sketch& more, Sketch* sketch) {
+  const auto append = [](const Eigen::Matrix3Xd& from, Eigen::Matrix3Xd* to) {
+    to->conservativeResize(3, to->cols() + from.cols());
+    to->rightCols(from.cols()) = from;
+  };
+  const int nodes = int(sketch->nodes.cols()), handles = int(sketch->handles.cols());
+  append(more.nodes, &sketch->nodes);
+  append(more.handles, &sketch->handles);
+  for (Stroke s : more.strokes) {
+    if (!is_closed(s.kind)) s.begin += nodes, s.end += nodes;
+    if (num_handles(s.kind) > 0) s.handle += handles;
+    sketch->strokes.push_back(s);
+  }
+  sketch->evidence.insert(sketch->evidence.end(), more.evidence.begin(), more.evidence.end());
+}
+
 ControlPoints control_points(const Sketch& sketch, int stroke) {
   const Stroke& s = sketch.strokes[stroke];
   ControlPoints c;

@@ -78,6 +78,9 @@ struct Sketch {
                  const Evidence& evidence = {});
 };
 
+/// Appends the strokes of another sketch, with nodes of their own.
+void append_strokes(const Sketch& more, Sketch* sketch);
+
 /// Control points of a stroke in the order of StrokeKind: at most four.
 struct ControlPoints {
   std::array<Eigen::Vector3d, 4> p;
