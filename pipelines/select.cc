@@ -114,7 +114,9 @@ Verdict judge_extent(const StrokeStats& s, const SelectOptions& options) {
 // would be seen for sure. The more a stroke moves, the more often it must be seen.
 Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
               const SelectOptions& options) {
-  if (s.rms_px > options.max_rms_px + sigma) return Verdict::kScattered;
+  // A few views agree by accident more easily: so they must agree better.
+  const double many = std::min(1.0, 0.5 * s.views / options.min_views);
+  if (s.rms_px > many * options.max_rms_px + sigma) return Verdict::kScattered;
   if (s.bias_px > options.max_bias_px + sigma) return Verdict::kMoving;
   if (sharp > 0 && s.width_px > options.max_width * sharp) return Verdict::kBlurred;
   // What lies dead still in many views is no contour, though its two sides look alike in others.

@@ -153,6 +153,30 @@ TEST(Select, AnEdgeStaysThoughManyViewsSeeAnotherOneInItsPlace) {
   EXPECT_EQ(select_strokes(s, w, {}).sketch.size(), 2);
 }
 
+TEST(Select, AnEdgeThatFewViewsSeeStaysThoughOthersLieInItsPlaceWhereItIsHidden) {
+  // Four pixels beside an edge that all see: five views see it, many see the other near it.
+  Sketch s;
+  const Vector3d gap(0, 0, 4 * kPixel);
+  add_line(&s, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
+  const int rare = add_line(&s, Vector3d(0.3, 0.5, 0.5) + gap, Vector3d(0.7, 0.5, 0.5) + gap);
+  for (int seeing : {0, 5}) {
+    int shown = 0;
+    const EdgeWorld w = world_of(60, [&](int, const View& v) {
+      double z;
+      std::vector<Polyline> seen = {polyline_of(s, 0)};
+      const Eigen::Vector2d p = v.project({0.5, 0.5, 0.5}, &z), q = v.project({0.6, 0.5, 0.5}, &z);
+      const Eigen::Vector2d d = v.project(Vector3d(0.5, 0.5, 0.5) + gap, &z) - p;
+      const Eigen::Vector2d along = (q - p).normalized();
+      const bool apart = std::abs(d.x() * along.y() - d.y() * along.x()) > 2.5;
+      if (apart && shown < seeing) seen.push_back(polyline_of(s, rare)), ++shown;
+      return seen;
+    });
+    ASSERT_EQ(shown, seeing);
+    const Verdict verdict = select_strokes(s, w, {}).verdicts[rare];
+    EXPECT_EQ(verdict == Verdict::kKept, seeing > 0) << verdict_name(verdict);
+  }
+}
+
 TEST(Select, SaysWhyAStrokeFalls) {
   Sketch s = cube();
   const int tiny = add_line(&s, {0.2, 0.2, 0.3}, {0.2, 0.2, 0.3 + 2 * kPixel});

@@ -23,6 +23,22 @@ TEST(Validate, HasNothingToSayAboutASoundSketch) {
   EXPECT_THAT(validate(Sketch()), IsEmpty());
 }
 
+TEST(AppendStrokes, KeepsBothSketchesAsTheyWere) {
+  Sketch both = five_kinds();
+  const Sketch more = all_kinds();
+  append_strokes(more, &both);
+  append_strokes(Sketch(), &both);
+  EXPECT_THAT(validate(both), IsEmpty());
+  ASSERT_EQ(both.size(), five_kinds().size() + more.size());
+  for (int i = 0; i < both.size(); ++i) {
+    const int own = i < five_kinds().size() ? i : i - five_kinds().size();
+    const ControlPoints found = control_points(both, i);
+    const ControlPoints expected = control_points(own == i ? five_kinds() : more, own);
+    ASSERT_EQ(found.count, expected.count);
+    for (int k = 0; k < found.count; ++k) EXPECT_EQ(found.p[k], expected.p[k]);
+  }
+}
+
 TEST(Validate, FindsWhatIsNotFinite) {
   Sketch s = five_kinds();
   s.nodes(1, 2) = kNan;
