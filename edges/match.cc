@@ -102,8 +102,7 @@ Eigen::Vector3d distance_gradient(const EdgeWorld& world, const SampleMatch& mat
   const View& v = world.views[match.view];
   const Edgel& e = world.maps[match.view].edgels[match.edgel];
   const Eigen::Vector3d q = v.cam_from_world * position;
-  return (Eigen::RowVector2d(e.nx, e.ny) * v.camera.project_jacobian(q) *
-          v.cam_from_world.rotation)
+  return (Eigen::RowVector2d(e.nx, e.ny) * v.camera.project_jacobian(q) * v.cam_from_world.rotation)
       .transpose();
 }
 

@@ -35,8 +35,7 @@ double sharp_width(const Observation& o, int min_views) {
 struct Claim {
   int edgels = 0, views = 0;
 };
-Claim claim(const Observation& o, int stroke, const EdgelFlags& owned,
-            std::vector<int>* per_view) {
+Claim claim(const Observation& o, int stroke, const EdgelFlags& owned, std::vector<int>* per_view) {
   Claim c;
   std::fill(per_view->begin(), per_view->end(), 0);
   for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i)
@@ -53,8 +52,7 @@ Claim claim(const Observation& o, int stroke, const EdgelFlags& owned,
 
 // The edgels of a stroke are its own: those that its samples found, and their neighbours in the
 // chain, which samples of another stroke on the same edge may find.
-void own(const EdgeWorld& world, const Observation& o, int stroke,
-         EdgelFlags* owned) {
+void own(const EdgeWorld& world, const Observation& o, int stroke, EdgelFlags* owned) {
   constexpr int kBeside = 1;  // samples lie two pixels apart, edgels one
   for (int i = o.matches.first[o.layout.first[stroke]];
        i < o.matches.first[o.layout.first[stroke + 1]]; ++i) {

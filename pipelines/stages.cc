@@ -19,9 +19,9 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kFewestViews = 3;
-constexpr int kSecondViews = 3;     // that agree on a point where nothing else is
-constexpr int kShortestRest = 8;    // edgels: shorter rests of chains are corners and noise
-constexpr double kLonger = 3;       // times the shortest stroke: the shortest that comes late
+constexpr int kSecondViews = 3;    // that agree on a point where nothing else is
+constexpr int kShortestRest = 8;   // edgels: shorter rests of chains are corners and noise
+constexpr double kLonger = 3;      // times the shortest stroke: the shortest that comes late
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
 
 }  // namespace
@@ -199,8 +199,8 @@ Round look_again(const Sketch& sketch, const EdgeWorld& world, const Reconstruct
   const EdgeWorld rest = rest_of(world, sketch);
   LiftOptions lift = options.lift;
   lift.min_views = std::min(lift.min_views, kSecondViews);
-  const Sketch first = polish(initial_sketch(lift_edges(rest, lift), rest.footprint, options), rest,
-                              early(options));
+  const Sketch first =
+      polish(initial_sketch(lift_edges(rest, lift), rest.footprint, options), rest, early(options));
   const Sketch more = rewritten(grown(first, rest, options), rest, options);
   Sketch both = sketch;
   append_strokes(more, &both);

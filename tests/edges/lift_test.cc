@@ -221,5 +221,29 @@ TEST(Match, CurveWithoutSamplesMatchesNothing) {
   EXPECT_EQ(m.sigma_px, 0);
 }
 
+TEST(Match, EdgelsBetweenTheSamplesOfTheNearerCurveAreItsToo) {
+  const Eigen::Vector3d from(0.2, 0.5, 0.5), way(0.6, 0, 0);
+  const EdgeWorld w = ideal_world(ring_of_views(12, kMiddle, 3), {segment(from, from + way)});
+  // A curve on the edge, and one half a pixel beside it whose samples lie between the other's.
+  CurvePoints samples;
+  constexpr int kCount = 33;  // three pixels apart
+  samples.position.resize(3, 2 * kCount);
+  samples.tangent = way.normalized().replicate(1, 2 * kCount);
+  for (int i = 0; i < kCount; ++i) {
+    samples.position.col(i) = from + way * (i + 0.25) / kCount;
+    samples.position.col(kCount + i) =
+        from + way * (i + 0.75) / kCount + 0.5 * w.footprint * Eigen::Vector3d(0, 0.7, 0.7);
+  }
+  samples.first = {0, kCount, 2 * kCount};
+  for (bool between : {false, true}) {
+    MatchOptions options;
+    options.exclusive_between = between;
+    const Matches m = match_samples(w, samples, options);
+    const int nearer = m.first[kCount], other = m.first[2 * kCount] - nearer;
+    EXPECT_GT(nearer, 12 * kCount * 3 / 4);
+    EXPECT_EQ(other > nearer / 4, !between) << other;
+  }
+}
+
 }  // namespace
 }  // namespace sketchsplat

@@ -114,31 +114,5 @@ TEST(Polish, ParallelEdgesFourPixelsApartDoNotMixTheirEdgels) {
     EXPECT_LT(farthest(back, s, {polyline_of(truth, s)}, 0.03), 0.05 * w.footprint);
 }
 
-TEST(Polish, AnEdgeThatFewViewsSeeIsNotPulledToAnotherOneInFrontOfIt) {
-  constexpr double kPixel = 3.0 / 500;
-  Sketch truth;
-  const Vector3d gap(0, 0, 4 * kPixel);
-  add_line(&truth, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
-  add_line(&truth, Vector3d(0.3, 0.5, 0.5) + gap, Vector3d(0.7, 0.5, 0.5) + gap);
-  const std::vector<View> views = ring_of_views(60, kMiddle, 3);
-  std::vector<EdgelMap> maps;
-  int shown = 0;
-  for (const View& v : views) {
-    double z;
-    std::vector<Polyline> seen = {polyline_of(truth, 0)};
-    const Eigen::Vector2d p = v.project({0.5, 0.5, 0.5}, &z), q = v.project({0.6, 0.5, 0.5}, &z);
-    const Eigen::Vector2d d = v.project(Vector3d(0.5, 0.5, 0.5) + gap, &z) - p;
-    const Eigen::Vector2d along = (q - p).normalized();
-    const bool apart = std::abs(d.x() * along.y() - d.y() * along.x()) > 2.5;
-    if (apart && shown < 5) seen.push_back(polyline_of(truth, 1)), ++shown;
-    maps.push_back(ideal_edgels(v, seen));
-  }
-  ASSERT_EQ(shown, 5);
-  const EdgeWorld w = make_edge_world(views, maps);
-  const Sketch back = polish(truth, w, {});
-  for (int s = 0; s < 2; ++s)
-    EXPECT_LT(farthest(back, s, {polyline_of(truth, s)}, 0.03), 0.05 * w.footprint);
-}
-
 }  // namespace
 }  // namespace sketchsplat
