@@ -31,6 +31,11 @@ struct Camera {
     return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy, 1.0};
   }
 
+  /// Of the part of the image whose top-left pixel is (x0, y0).
+  Camera cut(int x0, int y0, int part_width, int part_height) const {
+    return {part_width, part_height, fx, fy, cx - x0, cy - y0};
+  }
+
   bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= width - 1 && pixel.y() <= height - 1;
   }

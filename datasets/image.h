@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <vector>
@@ -29,6 +30,15 @@ struct Image {
   T* row(int y) { return data.data() + size_t(y) * width; }
   const T* row(int y) const { return data.data() + size_t(y) * width; }
 };
+
+/// The part whose top-left pixel is (x0, y0). Precondition: it lies inside the image.
+template <typename T>
+Image<T> cut(const Image<T>& image, int x0, int y0, int width, int height) {
+  assert(x0 >= 0 && y0 >= 0 && x0 + width <= image.width && y0 + height <= image.height);
+  Image<T> out(width, height);
+  for (int y = 0; y < height; ++y) std::copy_n(image.row(y0 + y) + x0, width, out.row(y));
+  return out;
+}
 
 /// A picture as the detectors want it: RGB in [0, 1], never premultiplied, and its mask.
 struct Picture {

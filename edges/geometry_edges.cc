@@ -276,16 +276,24 @@ void smooth_chains(EdgelMap* map) {
     }
 }
 
-}  // namespace
+// The pixels that matter: the object and as much around it as filters and sides reach.
+cv::Rect region_of(const GeometryMaps& maps) {
+  constexpr int kMargin = 16;  // [px]
+  const int w = maps.width(), h = maps.height();
+  const cv::Mat1f alpha(h, w, const_cast<float*>(maps.alpha.data.data()));
+  const cv::Rect object = cv::boundingRect(alpha > 0);
+  if (object.empty()) return object;
+  const cv::Rect wider(object.x - kMargin, object.y - kMargin, object.width + 2 * kMargin,
+                       object.height + 2 * kMargin);
+  return wider & cv::Rect(0, 0, w, h);
+}
 
-EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
-                        const GeometryOptions& options, GeometryNoise* noise) {
+EdgelMap edges_of(const GeometryMaps& maps, const Camera& camera, const GeometryOptions& options,
+                  GeometryNoise* noise) {
   EdgelMap map;
-  map.width = maps.width(), map.height = maps.height();
   map.chain.assign(1, 0);
-  if (map.width < 3 || map.height < 3) return map;
   GeometryFields f = make_fields(maps, camera);
-  map.mask = Image<uint8_t>(map.width, map.height);
+  map.mask = Image<uint8_t>(maps.width(), maps.height());
   std::copy(f.valid.begin(), f.valid.end(), map.mask.data.begin());
   if (cv::countNonZero(f.valid) == 0) return map;
   cv::Mat1f ax, ay;
@@ -297,7 +305,7 @@ EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
   cv::magnitude(depth.magnitude / low_depth, normal.magnitude / low_normal, f.activity);
   const Thresholds t = measure_noise(f, options, noise);
 
-  Collection found(map.width, map.height);
+  Collection found(maps.width(), maps.height());
   collect(
       find_places(slopes_of(ax, ay), 0.5 * kPeak),
       [&](const Place& p, Measured* m) { return measure_outline(f, p, m); }, &found);
@@ -319,6 +327,32 @@ EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
   }
   drop_rims(rim, options.min_chain, &map);
   smooth_chains(&map);
+  return map;
+}
+
+}  // namespace
+
+EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
+                        const GeometryOptions& options, GeometryNoise* noise) {
+  EdgelMap map;
+  map.width = maps.width(), map.height = maps.height();
+  map.chain.assign(1, 0);
+  if (map.width < 3 || map.height < 3) return map;
+  map.mask = Image<uint8_t>(map.width, map.height);
+  const cv::Rect box = region_of(maps);
+  if (box.empty()) return map;
+  const auto part = [&box](const Image<float>& image) {
+    return cut(image, box.x, box.y, box.width, box.height);
+  };
+  GeometryMaps inner{part(maps.depth), {}, part(maps.alpha)};
+  for (int c = 0; c < 3; ++c) inner.normal[c] = part(maps.normal[c]);
+  EdgelMap found =
+      edges_of(inner, camera.cut(box.x, box.y, box.width, box.height), options, noise);
+  for (int y = 0; y < box.height; ++y)
+    std::copy_n(found.mask.row(y), box.width, map.mask.row(box.y + y) + box.x);
+  for (Edgel& e : found.edgels) e.x += float(box.x), e.y += float(box.y);
+  map.edgels = std::move(found.edgels);
+  map.chain = std::move(found.chain);
   build_lookup(&map, options.reach_px);
   return map;
 }

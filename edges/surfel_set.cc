@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -66,6 +67,42 @@ std::vector<int> highest(const Eigen::VectorXd& score, int most) {
   if (int(order.size()) > most) order.resize(std::max(0, most));
   return order;
 }
+
+// Points by the cube of a grid that they lie in, cubes in the order of their places.
+class Bins {
+ public:
+  Bins(const Eigen::Matrix3Xd& points, double side)
+      : low_(points.rowwise().minCoeff()), side_(side) {
+    for (int i = 0; i < points.cols(); ++i) entries_.push_back({place(points.col(i)), i});
+    std::sort(entries_.begin(), entries_.end());
+  }
+  // All points within `side` of p, and some more.
+  template <typename F>
+  void for_each_near(const Eigen::Vector3d& p, const F& f) const {
+    const Place middle = place(p);
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y) {
+        const Place first{middle[0] + z, middle[1] + y, middle[2] - 1};
+        auto e = std::lower_bound(entries_.begin(), entries_.end(), Entry{first, -1});
+        for (; e != entries_.end() && e->first[0] == first[0] && e->first[1] == first[1] &&
+               e->first[2] <= middle[2] + 1;
+             ++e)
+          f(e->second);
+      }
+  }
+
+ private:
+  using Place = std::array<long, 3>;
+  using Entry = std::pair<Place, int>;
+  Place place(const Eigen::Vector3d& p) const {
+    const Eigen::Array3d q = ((p - low_) / side_).array().floor().max(-1e15).min(1e15);
+    return {long(q[2]), long(q[1]), long(q[0])};
+  }
+
+  Eigen::Vector3d low_;
+  double side_;
+  std::vector<Entry> entries_;
+};
 
 bool is_faint(const SurfelSet& set, int i, const Eigen::VectorXd& weight, double min_alpha,
               double min_weight) {
@@ -171,21 +208,24 @@ DensityChange clone_split(const SurfelSet& set, const Eigen::Matrix2Xd& pull,
 std::vector<std::pair<int, int>> neighbour_pairs(const SurfelSet& set, int count, double reach,
                                                  double max_angle_deg) {
   const int n = set.size();
+  if (n == 0) return {};
   Eigen::Matrix3Xd normal(3, n);
   for (int i = 0; i < n; ++i)
     normal.col(i) = surfel_normal(set.values.col(i).segment<4>(SurfelSet::kRotation));
   const Eigen::Matrix3Xd p = set.values.middleRows<3>(SurfelSet::kCenter);
   const double least = std::cos(max_angle_deg * M_PI / 180);
+  const Bins bins(p, reach);
   std::vector<std::vector<std::pair<double, int>>> near(n);
 #pragma omp parallel for schedule(dynamic, 64)
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
+    bins.for_each_near(p.col(i), [&](int j) {
       const double d2 = (p.col(j) - p.col(i)).squaredNorm();
       if (j != i && d2 <= reach * reach && normal.col(i).dot(normal.col(j)) > least)
         near[i].push_back({d2, j});
-    }
-    std::sort(near[i].begin(), near[i].end());
-    if (int(near[i].size()) > count) near[i].resize(count);
+    });
+    const auto last = near[i].begin() + std::min<size_t>(count, near[i].size());
+    std::partial_sort(near[i].begin(), last, near[i].end());
+    near[i].erase(last, near[i].end());
   }
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < n; ++i)

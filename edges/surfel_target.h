@@ -9,7 +9,7 @@
 
 namespace sketchsplat {
 
-/// A view at one resolution, and which of its pixels are looked at.
+/// A view at one resolution, cut to the pixels that are looked at, and which these are.
 struct SurfelTarget {
   TrainingView view;
   Image<std::uint8_t> mask;  ///< the object and a margin of 1/25 of the side around it

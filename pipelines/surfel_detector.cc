@@ -57,7 +57,7 @@ class SurfelDetector : public Detector {
   void prepare(const Scene& scene, RunReport* report, Progress* progress) override {
     Stage stage("surfels", options_.surfels.renderings, report, progress);
     const std::vector<TrainingView> views = look(scene);
-    field_ = train_surfels(views, bounds_, options_.surfels, [&stage] { stage.step(); });
+    field_ = train_surfels(views, world_.bounds, options_.surfels, [&stage] { stage.step(); });
     if (field_.surfels.size() == 0)
       throw TooLittleError(scene.folder + ": expected an object inside all masks, found nothing");
     if (report) {
@@ -78,7 +78,7 @@ class SurfelDetector : public Detector {
     maps.alpha = picture.alpha;  // sharper than that of surfels
     EdgelMap map = geometry_edges(maps, view.camera, options_.geometry);
     if (options_.surfel_snap_px > 0)
-      map = snap_edgels(map, detect_edges(picture, options_.detect), options_.surfel_snap_px);
+      map = snap_edgels(map, edges_of(view, picture), options_.surfel_snap_px);
     return map;
   }
 
@@ -90,6 +90,13 @@ class SurfelDetector : public Detector {
   std::string surfels() const override { return surfel_ply(field_); }
 
  private:
+  // Of the picture: found when the surfels were fitted to it, if they were.
+  EdgelMap edges_of(const View& view, const Picture& picture) const {
+    for (size_t i = 0; i < world_.views.size(); ++i)
+      if (world_.views[i].image_path == view.image_path) return world_.maps[i];
+    return detect_edges(picture, options_.detect);
+  }
+
   static Picture read_masked(const View& view) {
     Picture picture = read_picture(view);
     if (picture.alpha.empty())
@@ -134,12 +141,12 @@ class SurfelDetector : public Detector {
       throw TooLittleError(scene.folder + ": expected at least three views, found " +
                            std::to_string(n));
     }
-    bounds_ = make_edge_world(std::move(good_views), std::move(good_maps)).bounds;
+    world_ = make_edge_world(std::move(good_views), std::move(good_maps));
     return good;
   }
 
   DetectionOptions options_;
-  Eigen::AlignedBox3d bounds_;
+  EdgeWorld world_;  // of the pictures
   SurfelField field_;
 };
 
