@@ -10,8 +10,9 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kCellPx = 2;    // [px] of a cell in the pictures that are compared, about
-constexpr int kFewestViews = 4;  // that may condemn a cell
+constexpr double kCellPx = 2;            // [px] of a cell in the pictures that are compared, about
+constexpr int kFewestViews = 4;          // that may condemn a cell
+constexpr double kMostUncovered = 0.01;  // share of the masks that carving may lay bare
 
 // What a view says about cells.
 struct Witness {
@@ -117,6 +118,38 @@ Grid visual_hull(const std::vector<Witness>& witnesses, const Eigen::AlignedBox3
   return g;
 }
 
+// Takes away what stands in lines of sight. The last cells before a point stay: they may hold it.
+int carve_sights(const std::vector<SightLine>& sights, double least, Grid* g) {
+  constexpr double kStep = 0.5, kLast = 2;  // [cells]
+  std::vector<int> count(g->size(), 0);
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < int(sights.size()); ++k) {
+    const Eigen::Vector3d eye = (sights[k].eye - g->low) / g->cell;
+    const Eigen::Vector3d way = (sights[k].point - g->low) / g->cell - eye;
+    const double length = way.norm(), radius = Eigen::Vector3d(g->nx, g->ny, g->nz).norm();
+    int before = -1;
+    for (double s = length - kLast; s > std::max(0.0, length - radius); s -= kStep) {
+      const Eigen::Vector3i q = (eye + s / length * way).array().floor().cast<int>();
+      if (!g->inside(q.x(), q.y(), q.z())) continue;
+      const int c = g->index(q.x(), q.y(), q.z());
+      if (c == before) continue;
+      before = c;
+#pragma omp atomic
+      ++count[c];
+    }
+  }
+  // Lines are thin: those of a neighbourhood count together.
+  const int stride[3] = {1, g->nx, g->nx * g->ny};
+  for (const int s : stride) {
+    const std::vector<int> single = count;
+    for (int c = s; c + s < g->size(); ++c) count[c] = single[c - s] + single[c] + single[c + s];
+  }
+  int carved = 0;
+  for (int c = 0; c < g->size(); ++c)
+    if (count[c] >= 27 * least && g->field[c] > 0) g->field[c] = -1, ++carved;
+  return carved;
+}
+
 void draw_depth(const Grid& g, const std::vector<int>& surface, Witness* w) {
   w->depth = cv::Mat1f(w->inside.size(), std::numeric_limits<float>::max());
   for (const int c : surface) {
@@ -149,14 +182,23 @@ bool consistent(const Eigen::Vector3d& p, const std::vector<Witness>& witnesses,
   return most >= options.agree * seen;
 }
 
+std::vector<int> surface_of(const Grid& g) {
+  std::vector<int> surface;
+  for (int c = 0; c < g.size(); ++c)
+    if (g.on_surface(c)) surface.push_back(c);
+  return surface;
+}
+
+void draw_depths(const Grid& g, const std::vector<int>& surface, std::vector<Witness>* witnesses) {
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int w = 0; w < int(witnesses->size()); ++w) draw_depth(g, surface, &(*witnesses)[w]);
+}
+
 int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, Grid* g) {
   int carved = 0;
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
-    std::vector<int> surface;
-    for (int c = 0; c < g->size(); ++c)
-      if (g->on_surface(c)) surface.push_back(c);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int w = 0; w < int(witnesses->size()); ++w) draw_depth(*g, surface, &(*witnesses)[w]);
+    const std::vector<int> surface = surface_of(*g);
+    draw_depths(*g, surface, witnesses);
     std::vector<char> gone(surface.size(), 0);
 #pragma omp parallel for schedule(dynamic, 64)
     for (int s = 0; s < int(surface.size()); ++s)
@@ -168,6 +210,18 @@ int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, Grid
     if (count * 2000 < int(surface.size())) break;
   }
   return carved;
+}
+
+// Share of the masks, without their rims, where no cell is.
+double uncovered(const Grid& g, std::vector<Witness>* witnesses) {
+  draw_depths(g, surface_of(g), witnesses);
+  double bare = 0, all = 0;
+  for (const Witness& w : *witnesses) {
+    const cv::Mat1b inner = w.inside > float(w.radius);
+    all += cv::countNonZero(inner);
+    bare += cv::countNonZero(inner & (w.depth == std::numeric_limits<float>::max()));
+  }
+  return all > 0 ? bare / all : 0;
 }
 
 // Cells are steps; a surface is not.
@@ -248,7 +302,8 @@ std::vector<Crossing> thinned(std::vector<Crossing> all, const Eigen::AlignedBox
 
 SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
                                   const Eigen::AlignedBox3d& bounds, int count,
-                                  const PhotoHullOptions& options) {
+                                  const PhotoHullOptions& options,
+                                  const std::vector<SightLine>& sights) {
   SurfaceSamples samples;
   if (views.empty() || bounds.isEmpty() || !(bounds.sizes().maxCoeff() > 0)) return samples;
   const double cell = bounds.sizes().maxCoeff() / options.cells;
@@ -257,7 +312,12 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
   for (int v = 0; v < int(views.size()); ++v)
     witnesses[v] = make_witness(views[v], cell, bounds.center());
   Grid grid = visual_hull(witnesses, bounds, options.cells);
-  samples.carved = carve(options, &witnesses, &grid);
+  const Grid whole = grid;
+  if (options.sights > 0) samples.carved += carve_sights(sights, options.sights, &grid);
+  samples.carved += carve(options, &witnesses, &grid);
+  if (samples.carved > 0 &&
+      uncovered(grid, &witnesses) > uncovered(whole, &witnesses) + kMostUncovered)
+    grid = whole, samples.carved = 0;
   samples.cell = grid.cell;
   smooth(&grid);
   double area = 0;

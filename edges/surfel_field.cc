@@ -64,8 +64,9 @@ SurfelInfluence spread_influence(SurfelInfluence part, const std::vector<int>& i
 class Trainer {
  public:
   Trainer(const std::vector<TrainingView>& views, const Eigen::AlignedBox3d& bounds,
-          const SurfelFieldOptions& options, const std::function<void()>& step)
-      : views_(views), bounds_(bounds), options_(options), on_step_(step) {}
+          const SurfelFieldOptions& options, const std::vector<SightLine>& sights,
+          const std::function<void()>& step)
+      : views_(views), bounds_(bounds), options_(options), sights_(sights), on_step_(step) {}
 
   SurfelField run() {
     field_.drawing.kernel = options_.kernel;
@@ -88,7 +89,7 @@ class Trainer {
  private:
   void seed() {
     const SurfaceSamples samples =
-        photo_hull_surface(views_, bounds_, options_.surfels, options_.hull);
+        photo_hull_surface(views_, bounds_, options_.surfels, options_.hull, sights_);
     const int n = int(samples.position.cols());
     field_.spacing = samples.spacing;
     field_.first_count = n;
@@ -333,6 +334,7 @@ class Trainer {
   const std::vector<TrainingView>& views_;
   const Eigen::AlignedBox3d bounds_;
   const SurfelFieldOptions options_;
+  const std::vector<SightLine>& sights_;
   const std::function<void()> on_step_;
   SurfelField field_;
   SurfelLossOptions loss_;
@@ -355,8 +357,9 @@ SurfelCloud SurfelField::cloud() const {
 }
 
 SurfelField train_surfels(const std::vector<TrainingView>& views, const Eigen::AlignedBox3d& bounds,
-                          const SurfelFieldOptions& options, const std::function<void()>& step) {
-  return Trainer(views, bounds, options, step).run();
+                          const SurfelFieldOptions& options, const std::vector<SightLine>& sights,
+                          const std::function<void()>& step) {
+  return Trainer(views, bounds, options, sights, step).run();
 }
 
 }  // namespace sketchsplat

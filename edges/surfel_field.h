@@ -21,12 +21,12 @@ struct SurfelFieldOptions {
   bool shading = true;  ///< colours follow normals; else each surfel has its own
   SurfelDensity density = SurfelDensity::kSteep;
   bool merge = true;
-  int surfels = 2000;       ///< at the start
-  int most_surfels = 3000;  ///< ever
+  int surfels = 6000;       ///< at the start
+  int most_surfels = 8000;  ///< ever
   int renderings = 1200;    ///< of a view, forward and backward, at the most
-  int side_px = 400;        ///< [px] longer side of the pictures at the end; a quarter of it first
+  int side_px = 800;        ///< [px] longer side of the pictures at the end; a quarter of it first
   int halvings = 1;         ///< of that side, in [0, 2], at the start
-  double lowpass_px = 0.7071;  ///< see SurfelOptions
+  double lowpass_px = 0.35;  ///< see SurfelOptions; a wider one swells outlines, so that faces sink
   int batch = 2;            ///< views per step
   double common_albedo = 0.3;  ///< weight of the surfels' departure from one albedo
   double shading_pull = 1;      ///< share of the shading gradient that reaches normals, [0, 1]
@@ -51,12 +51,14 @@ struct SurfelField {
 };
 
 /// Fits surfels (2D Gaussian splatting, Huang et al., SIGGRAPH 2024) to views of one object, coarse
-/// to fine: starts on the photo hull, Adam on mini-batches in a fixed order, density control, stops
+/// to fine: starts on the photo hull, which `sights` help to
+/// carve, Adam on mini-batches in a fixed order, density control, stops
 /// when the loss does. `views` at side_px or above; `bounds` hold the object. `step`, if given, is
 /// called after every rendering. The same bytes for any number of threads. Precondition: at least
 /// one view. No surfels if the hull is empty.
 SurfelField train_surfels(const std::vector<TrainingView>& views,
                           const Eigen::AlignedBox3d& bounds, const SurfelFieldOptions& options,
+                          const std::vector<SightLine>& sights = {},
                           const std::function<void()>& step = {});
 
 /// What the field looks like from a view: depth and unit normals where alpha >= 1/2, else none. Of

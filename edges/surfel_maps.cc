@@ -8,6 +8,7 @@
 namespace sketchsplat {
 namespace {
 
+constexpr float kLeastWeight = 0.02f;  // of a surfel at a pixel that counts
 constexpr double kGrazing = 0.05;  // cosine below which a plane says little of the depth at a pixel
 
 // What one surfel shows at one pixel, in the camera's frame.
@@ -90,6 +91,7 @@ GeometryMaps render_geometry(const SurfelField& field, const View& view, double 
       hits.clear();
       for (int k = makers.first[p]; k < makers.first[p + 1]; ++k) {
         const int s = makers.surfel[k];
+        if (makers.weight[k] < kLeastWeight) continue;
         const float along = normal.col(s).dot(ray);
         const float z = std::abs(along) > kGrazing * ray.norm()
                             ? normal.col(s).dot(center.col(s)) / along

@@ -19,7 +19,10 @@ const std::vector<Preset>& presets() {
         {"lift-views", "16"},
         {"polish-rounds", "4"},
         {"polish-spacing", "5"},
-        {"surfel-renderings", "500"}}},
+        {"surfels", "4000"},
+        {"surfels-most", "5000"},
+        {"surfel-side", "400"},
+        {"surfel-renderings", "600"}}},
       {"balanced", {}},
       {"accurate",
        {{"steps", "60"},
@@ -159,6 +162,8 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfel-smooth-angle", &o->smooth_angle_deg, "deg", 1, 90, "Turn that neighbours keep");
   f->add("surfel-carving", &o->hull.sweeps, "sweeps", 0, 10000,
          "Of the first surface, where views disagree");
+  f->add("surfel-sights", &o->hull.sights, "lines", 0, 1e6,
+         "Lines of sight to edges through a cell of the first surface that empty it; 0 looks at none");
   f->add("surfel-mode", &o->mode_deg, "deg", 0, 90,
          "Turn of what is one surface at a pixel; 0 blends all surfels");
   f->add("surfel-shading-pull", &o->shading_pull, "", 0, 1,

@@ -57,7 +57,8 @@ class SurfelDetector : public Detector {
   void prepare(const Scene& scene, RunReport* report, Progress* progress) override {
     Stage stage("surfels", options_.surfels.renderings, report, progress);
     const std::vector<TrainingView> views = look(scene);
-    field_ = train_surfels(views, world_.bounds, options_.surfels, [&stage] { stage.step(); });
+    field_ =
+        train_surfels(views, world_.bounds, options_.surfels, sights(), [&stage] { stage.step(); });
     if (field_.surfels.size() == 0)
       throw TooLittleError(scene.folder + ": expected an object inside all masks, found nothing");
     if (report) {
@@ -95,6 +96,14 @@ class SurfelDetector : public Detector {
     for (size_t i = 0; i < world_.views.size(); ++i)
       if (world_.views[i].image_path == view.image_path) return world_.maps[i];
     return detect_edges(picture, options_.detect);
+  }
+
+  // What the edges of the pictures, printed ones too, say about where nothing is.
+  std::vector<SightLine> sights() const {
+    if (options_.surfels.hull.sights == 0) return {};
+    LiftOptions options;
+    options.stride_px = 6, options.sweep_views = 16, options.min_views = 5;
+    return sight_lines(world_, lift_edges(world_, options));
   }
 
   static Picture read_masked(const View& view) {
