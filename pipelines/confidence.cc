@@ -89,11 +89,11 @@ double probability_of_edge(const StrokeFeatures& f, bool outlines) {
   double x;
   if (outlines) {
     const double sigma = std::log2(f.determined > 0 ? std::clamp(f.sigma, 1.0 / 32, 32.0) : 32);
-    x = 5.408 * f.outline - 1.116 * sigma - 0.847 * contrast + 7.259 * f.view_share +
-        6.630 * f.support - 11.560;
+    x = 5.992 * f.outline - 1.595 * sigma - 1.007 * contrast + 2.414 * f.joined +
+        4.198 * f.support - 6.389;
   } else {
-    x = 11.686 * f.view_share - 11.090 * std::min(f.rms_px, 1.0) + 9.048 * f.support +
-        2.335 * f.joined - 0.444 * contrast - 12.531;
+    x = 11.274 * f.view_share - 9.635 * std::min(f.rms_px, 1.0) + 10.565 * f.support +
+        2.818 * f.joined - 0.628 * contrast - 14.069;
   }
   return 1 / (1 + std::exp(-x));
 }

@@ -134,7 +134,7 @@ TEST(Confidence, RisesWithTheEvidence) {
     const double p = probability_of_edge(f, outlines);
     EXPECT_GT(p, 0);
     EXPECT_LT(p, 1);
-    for (double StrokeFeatures::*more : {&StrokeFeatures::view_share, &StrokeFeatures::support}) {
+    for (double StrokeFeatures::*more : {&StrokeFeatures::support, &StrokeFeatures::joined}) {
       StrokeFeatures better = f;
       better.*more += 0.2;
       EXPECT_GT(probability_of_edge(better, outlines), p);
