@@ -155,6 +155,20 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   return map;
 }
 
+std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep, int min_chain,
+                             EdgelMap* to) {
+  std::vector<int> kept;
+  if (to->chain.empty()) to->chain.push_back(int(to->edgels.size()));
+  for (int c = 0; c < from.num_chains(); ++c)
+    for (int begin = from.chain[c], end; begin < from.chain[c + 1]; begin = end + 1) {
+      for (end = begin; end < from.chain[c + 1] && keep[end];) ++end;
+      if (end == begin || end - begin < min_chain) continue;
+      for (int k = begin; k < end; ++k) kept.push_back(k), to->edgels.push_back(from.edgels[k]);
+      to->chain.push_back(int(to->edgels.size()));
+    }
+  return kept;
+}
+
 void build_lookup(EdgelMap* map, double reach_px) {
   map->nearest.clear();
   map->window_width = map->window_height = 0;

@@ -42,6 +42,12 @@ struct EdgelMap {
 /// Fills the look-up of a map for edgels within `reach_px` of a pixel centre.
 void build_lookup(EdgelMap* map, double reach_px);
 
+/// Appends the runs of at least `min_chain` edgels within one chain that are marked, each as a
+/// chain of its own; returns where they were. `keep`: one mark per edgel of `from`. The lookup of
+/// `to` has to be built anew.
+std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep, int min_chain,
+                             EdgelMap* to);
+
 struct DetectOptions {
   double sigma_px = 1.0;    ///< [px] smoothing of the gradient
   double high_sigma = 7.0;  ///< an edge starts at this many standard deviations of the noise

@@ -34,24 +34,6 @@ void explain_in_view(const EdgeWorld& world, int view, const CurvePoints& sample
   }
 }
 
-// Runs of edgels that are not flagged, and where they were.
-EdgelMap rest_of(const EdgelMap& map, const std::vector<char>& gone, int min_chain,
-                 std::vector<int>* kept) {
-  EdgelMap out;
-  out.width = map.width, out.height = map.height;
-  out.noise = map.noise;
-  out.chain.push_back(0);
-  for (int c = 0; c < map.num_chains(); ++c)
-    for (int begin = map.chain[c], end; begin < map.chain[c + 1]; begin = end + 1) {
-      for (end = begin; end < map.chain[c + 1] && !gone[end];) ++end;
-      if (end - begin < min_chain) continue;
-      for (int k = begin; k < end; ++k) kept->push_back(k), out.edgels.push_back(map.edgels[k]);
-      out.chain.push_back(int(out.edgels.size()));
-    }
-  build_lookup(&out, kLookupPx);
-  return out;
-}
-
 }  // namespace
 
 EdgelFlags no_edgels(const EdgeWorld& world) {
@@ -78,8 +60,13 @@ EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int m
   out.plane_normal.resize(n);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int v = 0; v < n; ++v) {
-    std::vector<int> kept;
-    out.maps[v] = rest_of(world.maps[v], explained[v], min_chain, &kept);
+    const EdgelMap& map = world.maps[v];
+    std::vector<char> keep = explained[v];
+    for (char& k : keep) k = !k;
+    out.maps[v].width = map.width, out.maps[v].height = map.height;
+    out.maps[v].noise = map.noise;
+    const std::vector<int> kept = append_runs(map, keep, min_chain, &out.maps[v]);
+    build_lookup(&out.maps[v], kLookupPx);
     out.plane_normal[v].resize(3, kept.size());
     for (size_t k = 0; k < kept.size(); ++k)
       out.plane_normal[v].col(k) = world.plane_normal[v].col(kept[k]);

@@ -15,26 +15,6 @@ namespace {
 constexpr double kAlongDeg = 30;  // largest turn between an edge of the picture and of the geometry
 constexpr int kFewestViews = 3;
 
-// A chain goes on while its edgels are kept.
-void append_kept(const EdgelMap& from, const std::vector<char>& keep, int min_chain, EdgelMap* to) {
-  for (int c = 0; c < from.num_chains(); ++c) {
-    int k = from.chain[c];
-    while (k < from.chain[c + 1]) {
-      if (!keep[k]) {
-        ++k;
-        continue;
-      }
-      int end = k;
-      while (end < from.chain[c + 1] && keep[end]) ++end;
-      if (end - k >= min_chain) {
-        to->edgels.insert(to->edgels.end(), from.edgels.begin() + k, from.edgels.begin() + end);
-        to->chain.push_back(int(to->edgels.size()));
-      }
-      k = end;
-    }
-  }
-}
-
 // Per edgel of `a`: does one of `b` within reach run along it?
 std::vector<char> beside(const EdgelMap& a, const EdgelMap& b, double reach_px, bool along) {
   const double least = std::cos(kAlongDeg * M_PI / 180);
@@ -166,13 +146,12 @@ EdgelMap snap_edgels(const EdgelMap& geometry, const EdgelMap& picture, double r
   out.width = picture.width, out.height = picture.height;
   out.noise = picture.noise;
   out.mask = picture.mask;
-  out.chain = {0};
   constexpr int kMinChain = 4;  // [px] shorter pieces are chance
-  append_kept(picture, beside(picture, geometry, reach_px, true), kMinChain, &out);
+  append_runs(picture, beside(picture, geometry, reach_px, true), kMinChain, &out);
   build_lookup(&out, std::max(4.0, reach_px));
   std::vector<char> alone = beside(geometry, out, reach_px, false);
   for (char& a : alone) a = !a;
-  append_kept(geometry, alone, kMinChain, &out);
+  append_runs(geometry, alone, kMinChain, &out);
   build_lookup(&out, 4.0);
   return out;
 }

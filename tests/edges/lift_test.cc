@@ -141,17 +141,6 @@ TEST(Link, PointsInOnePlaceAndLonePointsDoNoHarm) {
   EXPECT_TRUE(link_points({p, p}, 1, {}).empty());
 }
 
-CurvePoints line_samples(const Eigen::Vector3d& a, const Eigen::Vector3d& b, int n) {
-  CurvePoints s;
-  s.position.resize(3, n), s.tangent.resize(3, n);
-  for (int i = 0; i < n; ++i) {
-    s.position.col(i) = a + (b - a) * (i + 0.5) / n;
-    s.tangent.col(i) = (b - a).normalized();
-  }
-  s.first = {0, n};
-  return s;
-}
-
 TEST(Match, QuadraticTellsTheOffsetOfALineAcrossIt) {
   const Eigen::Vector3d a(0.1, 0.4, 0.5), b(0.9, 0.4, 0.5), offset(0, 0.002, -0.001);
   const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), {segment(a, b)});

@@ -14,15 +14,21 @@ const Vector3d kMiddle(0.5, 0.5, 0.5);
 constexpr double kPixel = 3.0 / 500;
 
 CurvePoints samples_of(const Vector3d& a, const Vector3d& b) {
-  const int n = int((b - a).norm() / kPixel) + 1;
-  CurvePoints out;
-  out.position.resize(3, n), out.tangent.resize(3, n);
-  for (int i = 0; i < n; ++i) {
-    out.position.col(i) = a + (b - a) * (i + 0.5) / n;
-    out.tangent.col(i) = (b - a).normalized();
-  }
-  out.first = {0, n};
-  return out;
+  return line_samples(a, b, int((b - a).norm() / kPixel) + 1);
+}
+
+TEST(AppendRuns, KeepsMarkedRunsWithinChainsThatAreLongEnough) {
+  EdgelMap from, to;
+  from.edgels.resize(9);
+  for (int i = 0; i < 9; ++i) from.edgels[i].x = float(i);
+  from.chain = {0, 5, 9};
+  // Two of the first chain, one alone, then a run that the end of the chain cuts in two.
+  const std::vector<int> kept = append_runs(from, {1, 1, 0, 1, 1, 1, 1, 0, 1}, 2, &to);
+  EXPECT_EQ(kept, (std::vector<int>{0, 1, 3, 4, 5, 6}));
+  EXPECT_EQ(to.chain, (std::vector<int>{0, 2, 4, 6}));
+  EXPECT_EQ(to.edgels[4].x, 5);
+  EXPECT_TRUE(append_runs(from, std::vector<char>(9, 0), 0, &to).empty());
+  EXPECT_EQ(to.num_chains(), 3);
 }
 
 TEST(Unexplained, LeavesTheEdgeThatNoCurveRunsAlong) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "edges/lift.h"
+#include "edges/match.h"
 
 namespace sketchsplat::test {
 
@@ -93,6 +94,18 @@ inline EdgeWorld ideal_world(const std::vector<View>& views, const std::vector<P
   std::vector<EdgelMap> maps;
   for (const View& v : views) maps.push_back(ideal_edgels(v, curves));
   return make_edge_world(views, maps);
+}
+
+/// n samples of a straight curve.
+inline CurvePoints line_samples(const Eigen::Vector3d& a, const Eigen::Vector3d& b, int n) {
+  CurvePoints s;
+  s.position.resize(3, n), s.tangent.resize(3, n);
+  for (int i = 0; i < n; ++i) {
+    s.position.col(i) = a + (b - a) * (i + 0.5) / n;
+    s.tangent.col(i) = (b - a).normalized();
+  }
+  s.first = {0, n};
+  return s;
 }
 
 /// Distance of a point from the nearest curve.
