@@ -24,12 +24,7 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
     sketch = round.sketch;
     if (options.simplify && !round.changed) break;
   }
-  if (options.second_look) {
-    const Round again = look_again(sketch, world, options, &report, progress);
-    sketch = again.changed && options.rounds > 0
-                 ? run_round(again.sketch, world, targets, options, &report, progress).sketch
-                 : again.sketch;
-  }
+  sketch = look_again(sketch, world, targets, options, &report, progress);
   sketch = finish_sketch(sketch, world, options, &report, progress);
   if (sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");

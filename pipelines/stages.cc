@@ -191,10 +191,9 @@ EdgeWorld rest_of(const EdgeWorld& world, const Sketch& sketch) {
   return unexplained(world, explained, kShortestRest);
 }
 
-}  // namespace
-
-Round look_again(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
-                 RunReport* report, Progress* progress) {
+// The sketch with what the rest of the edgels add to it.
+Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
+                RunReport* report, Progress* progress) {
   Stage stage("again", 0, report, progress);
   const EdgeWorld rest = rest_of(world, sketch);
   LiftOptions lift = options.lift;
@@ -216,6 +215,17 @@ Round look_again(const Sketch& sketch, const EdgeWorld& world, const Reconstruct
   report->counts.push_back({"strokes_added", double(added)});
   stage.result(std::to_string(added) + " of " + std::to_string(more.size()) + " strokes stand");
   return {keep_strokes(both, keep), added > 0};
+}
+
+}  // namespace
+
+Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
+                  const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
+                  RunReport* report, Progress* progress) {
+  if (!options.second_look) return sketch;
+  const Round more = with_rest(sketch, world, options, report, progress);
+  if (!more.changed || options.rounds == 0) return more.sketch;
+  return run_round(more.sketch, world, targets, options, report, progress).sketch;
 }
 
 namespace {

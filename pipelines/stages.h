@@ -38,9 +38,10 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
 
 /// A second look, at the edgels that no stroke explains. They are few, so fewer views need to agree
 /// on a point, and nothing pulls at what they show. Strokes that come of it are chosen among the
-/// others as all are; `changed` if one was.
-Round look_again(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
-                 RunReport* report, Progress* progress);
+/// others as all are; if one was, one more round follows.
+Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
+                  const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
+                  RunReport* report, Progress* progress);
 
 /// Last polish on the edgels, last choice, and the evidence that is written with the sketch.
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
