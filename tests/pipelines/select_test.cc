@@ -130,6 +130,15 @@ TEST(Select, ParallelEdgesFourPixelsApartAreTwo) {
   EXPECT_EQ(select_strokes(s, w, {}).sketch.size(), 2);
 }
 
+// [px] between the middle line along x and the same moved by `gap`, in a view.
+double pixels_apart(const View& v, const Vector3d& gap) {
+  double z;
+  const Eigen::Vector2d p = v.project(kMiddle, &z),
+                        q = v.project(kMiddle + 0.1 * Vector3d::UnitX(), &z);
+  const Eigen::Vector2d d = v.project(kMiddle + gap, &z) - p, along = (q - p).normalized();
+  return std::abs(d.x() * along.y() - d.y() * along.x());
+}
+
 TEST(Select, AnEdgeStaysThoughManyViewsSeeAnotherOneInItsPlace) {
   Sketch s;
   const Vector3d gap(0, 0, 3 * kPixel);
@@ -138,12 +147,8 @@ TEST(Select, AnEdgeStaysThoughManyViewsSeeAnotherOneInItsPlace) {
   // Where they lie less than 1.5 px apart there is one edge in the picture: the first.
   int apart = 0;
   const EdgeWorld w = world_of(60, [&](int, const View& v) {
-    double z;
     std::vector<Polyline> seen = {polyline_of(s, 0)};
-    const Eigen::Vector2d p = v.project({0.5, 0.5, 0.5}, &z), q = v.project({0.6, 0.5, 0.5}, &z);
-    const Eigen::Vector2d d = v.project(Vector3d(0.5, 0.5, 0.5) + gap, &z) - p;
-    const Eigen::Vector2d along = (q - p).normalized();
-    if (std::abs(d.x() * along.y() - d.y() * along.x()) < 1.5) return seen;
+    if (pixels_apart(v, gap) < 1.5) return seen;
     seen.push_back(polyline_of(s, 1));
     ++apart;
     return seen;
@@ -162,13 +167,9 @@ TEST(Select, AnEdgeThatFewViewsSeeStaysThoughOthersLieInItsPlaceWhereItIsHidden)
   for (int seeing : {0, 5}) {
     int shown = 0;
     const EdgeWorld w = world_of(60, [&](int, const View& v) {
-      double z;
       std::vector<Polyline> seen = {polyline_of(s, 0)};
-      const Eigen::Vector2d p = v.project({0.5, 0.5, 0.5}, &z), q = v.project({0.6, 0.5, 0.5}, &z);
-      const Eigen::Vector2d d = v.project(Vector3d(0.5, 0.5, 0.5) + gap, &z) - p;
-      const Eigen::Vector2d along = (q - p).normalized();
-      const bool apart = std::abs(d.x() * along.y() - d.y() * along.x()) > 2.5;
-      if (apart && shown < seeing) seen.push_back(polyline_of(s, rare)), ++shown;
+      if (pixels_apart(v, gap) > 2.5 && shown < seeing)
+        seen.push_back(polyline_of(s, rare)), ++shown;
       return seen;
     });
     ASSERT_EQ(shown, seeing);
