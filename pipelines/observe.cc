@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/observe.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +22,36 @@ double median(std::vector<float>* values) {
   return (*values)[k];
 }
 
+constexpr int kPlacing = 3;          // views that place a sample
+constexpr double kPlaceReach = 1.5;  // [px] of an edgel, and of the place, from the stroke
+
 }  // namespace
+
+Observation observe_places(const Sketch& sketch, const EdgeWorld& world) {
+  MatchOptions match;
+  match.reach_px = kPlaceReach;
+  return observe(sketch, world, match, 2.0, 1);
+}
+
+double place_sigma_px(const Observation& o, double least_px) {
+  return std::max(least_px, 0.5 * o.matches.sigma_px);
+}
+
+Measured measure(const Observation& o, int stroke, double footprint) {
+  const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
+  Measured out{o.samples.position.middleCols(first, n), std::vector<char>(n, 0)};
+  for (int k = 0; k < n; ++k) {
+    const int i = first + k;
+    if (o.matches.views_of(i) < kPlacing) continue;
+    const Eigen::Vector3d t = o.samples.tangent.col(i);
+    Eigen::Vector3d move = -o.matches.information[i].ldlt().solve(o.matches.slope.col(i));
+    move -= move.dot(t) * t;
+    if (!move.allFinite() || move.norm() > kPlaceReach * footprint) continue;
+    out.point.col(k) += move;
+    out.placed[k] = 1;
+  }
+  return out;
+}
 
 StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, int min_views,
                       const std::vector<std::vector<char>>* ignored) {

@@ -35,6 +35,18 @@ struct Observation {
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
                     double spacing_px, int min_views);
 
+/// Where the edgels of all views put the samples of a stroke, across it.
+struct Measured {
+  Eigen::Matrix3Xd point;    ///< 3 x samples; where too few views tell, the sample itself
+  std::vector<char> placed;  ///< one per sample: do three views or more tell, within reach?
+};
+Measured measure(const Observation& observation, int stroke, double footprint);
+
+/// The observation that places are measured by, and the standard deviation of such a place [px]: at
+/// least `least_px`, which stands for what all views get wrong together.
+Observation observe_places(const Sketch& sketch, const EdgeWorld& world);
+double place_sigma_px(const Observation& observation, double least_px);
+
 /// What the edgels say about one stroke, but for those that are `ignored` (per view and edgel; may
 /// be null). `cover` counts all.
 StrokeStats summarise(const EdgeWorld& world, const Observation& observation, int stroke,

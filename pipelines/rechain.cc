@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/rechain.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -15,9 +14,7 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr int kFewestViews = 3;   // that place a sample
-constexpr double kReachPx = 1.5;  // of an edgel from the stroke
-constexpr double kGain = 1;       // [nat] below which nothing changes
+constexpr double kGain = 1;  // [nat] below which nothing changes
 
 // One stroke of a chain, and whether the chain runs through it backwards.
 struct Link {
@@ -114,24 +111,21 @@ std::vector<Chain> chains_of(const Sketch& sketch, const std::vector<int>& partn
   return chains;
 }
 
-// Where the edgels of all views put the samples of a stroke, in the order of the samples.
-struct Measured {
+// Where the edgels of all views put the samples of a stroke, in the order of the chain.
+struct Places {
   std::vector<Vector3d> point, tangent;
   std::vector<double> distance;  // from the stroke
 };
-Measured measure(const Observation& o, const Link& link, double footprint) {
-  Measured out;
-  const int first = o.layout.first[link.stroke], last = o.layout.first[link.stroke + 1];
-  for (int k = first; k < last; ++k) {
-    const int i = link.backward ? last - 1 - (k - first) : k;
-    if (o.matches.views_of(i) < kFewestViews) continue;
-    const Vector3d t = o.samples.tangent.col(i);
-    Vector3d move = -o.matches.information[i].ldlt().solve(o.matches.slope.col(i));
-    move -= move.dot(t) * t;
-    if (!move.allFinite() || move.norm() > kReachPx * footprint) continue;
-    out.point.push_back(o.samples.position.col(i) + move);
-    out.tangent.push_back(t);
-    out.distance.push_back(move.norm());
+Places placed(const Observation& o, const Link& link, double footprint) {
+  Places out;
+  const Measured m = measure(o, link.stroke, footprint);
+  const int first = o.layout.first[link.stroke], n = int(m.placed.size());
+  for (int j = 0; j < n; ++j) {
+    const int k = link.backward ? n - 1 - j : j;
+    if (!m.placed[k]) continue;
+    out.point.push_back(m.point.col(k));
+    out.tangent.push_back(o.samples.tangent.col(first + k));
+    out.distance.push_back((m.point.col(k) - o.samples.position.col(first + k)).norm());
   }
   return out;
 }
@@ -146,7 +140,7 @@ ChainRun run_of(const Sketch& sketch, const Observation& o, const Chain& chain, 
   ChainRun run;
   std::vector<Vector3d> points, tangents;
   for (const Link& link : chain.links) {
-    const Measured m = measure(o, link, footprint);
+    const Places m = placed(o, link, footprint);
     points.insert(points.end(), m.point.begin(), m.point.end());
     tangents.insert(tangents.end(), m.tangent.begin(), m.tangent.end());
     run.cost +=
@@ -154,9 +148,8 @@ ChainRun run_of(const Sketch& sketch, const Observation& o, const Chain& chain, 
                            sigma, sketch.strokes[link.stroke].kind, options);
   }
   for (size_t k = 0; k + 1 < chain.links.size(); ++k)
-    if (sketch.strokes[chain.links[k].stroke].kind == StrokeKind::kBezier &&
-        sketch.strokes[chain.links[k + 1].stroke].kind == StrokeKind::kBezier)
-      run.cost -= smooth_saving(options);
+    run.cost += joint_cost(sketch.strokes[chain.links[k].stroke].kind,
+                           sketch.strokes[chain.links[k + 1].stroke].kind, options);
   run.point.resize(3, points.size());
   run.tangent.resize(3, points.size());
   for (size_t i = 0; i < points.size(); ++i)
@@ -253,10 +246,8 @@ class Rebuilder {
 
 Rechained rechain(const Sketch& sketch, const EdgeWorld& world, const SegmentOptions& segment,
                   const RechainOptions& options) {
-  MatchOptions match;
-  match.reach_px = kReachPx;
-  const Observation o = observe(sketch, world, match, 2.0, 1);
-  const double sigma = std::max(options.sigma_px, 0.5 * o.matches.sigma_px) * world.footprint;
+  const Observation o = observe_places(sketch, world);
+  const double sigma = place_sigma_px(o, options.sigma_px) * world.footprint;
   const std::vector<End> ends = ends_of(sketch);
   const std::vector<Chain> chains =
       chains_of(sketch, partners(sketch, ends, options.gap_px * world.footprint,

@@ -151,9 +151,10 @@ RunFit cubic_through(const Matrix3Xd& p) {
       const Vector3d q = c * B.row(i).transpose();
       const Vector3d v = 3 * s * s * (c.col(1) - c.col(0)) + 6 * s * t[i] * (c.col(2) - c.col(1)) +
                          3 * t[i] * t[i] * (c.col(3) - c.col(2));
-      out.distance[i] = (p.col(i) - q).norm();
-      if (v.squaredNorm() > 0)
-        t[i] = std::clamp(t[i] + v.dot(p.col(i) - q) / v.squaredNorm(), 0.0, 1.0);
+      const double step = v.squaredNorm() > 0 ? v.dot(p.col(i) - q) / v.squaredNorm() : 0;
+      const double next = std::clamp(t[i] + step, 0.0, 1.0);
+      out.distance[i] = (p.col(i) - q - (next - t[i]) * v).norm();  // from the tangent there
+      t[i] = next;
     }
   }
   out.begin = c.col(0), out.end = c.col(3);

@@ -13,11 +13,11 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr double kOutlier = 8;     // [nat]
 constexpr double kRound = 0.25;    // [unit] what lies nearer to its circle is no ellipse
 constexpr double kClosing = 6;     // [unit] gap that a circle closes
 constexpr int kMostCuts = 24;      // candidates of a run
 constexpr int kTries = 4;          // on either side of a cut, at each step
+constexpr double kMostSaved = 2;   // parameters, by what goes on smoothly
 constexpr double kHopeless = 1e9;  // [nat] of points that no curve can be fitted to
 
 // Distance that 9 in 10 points keep.
@@ -26,6 +26,15 @@ double ninth_decile(Eigen::VectorXd d) {
   std::nth_element(d.data(), d.data() + k, d.data() + d.size());
   return d[k];
 }
+
+// Kinds that go together in one run.
+enum Family { kPlain, kOval, kFree, kFamilies };
+Family family_of(StrokeKind kind) {
+  return kind == StrokeKind::kBezier                                        ? kFree
+         : kind == StrokeKind::kEllipticArc || kind == StrokeKind::kEllipse ? kOval
+                                                                            : kPlain;
+}
+constexpr double kSwitch = 1;  // parameters that a change of the family is worth
 
 class Cutter {
  public:
@@ -55,7 +64,9 @@ class Cutter {
 
  private:
   double price(StrokeKind kind) const { return options_.price * num_parameters(kind); }
-  double saving() const { return smooth_saving(options_); }
+  double joint(const RunPiece& x, const RunPiece& y) const {
+    return joint_cost(x.fit.kind, y.fit.kind, options_);
+  }
 
   void consider(RunFit&& fit, RunPiece* out) const {
     if (!fit.ok()) return;
@@ -90,8 +101,8 @@ class Cutter {
     return out;
   }
 
-  // Shortest description over all ways to cut [a, b) at the candidates. A cubic after a cubic goes
-  // on smoothly, so ways that end with one and ways that do not are followed apart.
+  // Shortest description over all ways to cut [a, b) at the candidates. What a piece costs depends
+  // on the one before it, so the ways that end with each family are followed apart.
   std::vector<RunPiece> program(int a, int b) const {
     const int step = std::max(1, (b - a + kMostCuts - 1) / kMostCuts);
     std::vector<int> at;
@@ -100,37 +111,47 @@ class Cutter {
     const int n = int(at.size());
     struct Way {
       double cost = 1e300;
-      int from = 0, from_kind = 0;
+      int from = -1, from_family = 0;
       RunPiece last;
     };
-    std::vector<std::array<Way, 2>> ways(n);  // [0]: no cubic at the end, or nothing yet
+    std::vector<std::array<Way, kFamilies>> ways(n);
     ways[0][0].cost = 0;
-    const auto extend = [&](int i, int j, int kind, RunPiece&& piece) {
-      for (int before = 0; before < 2; ++before) {
-        const double cost = piece.cost - (before == 1 && kind == 1 ? saving() : 0);
-        const double sum = ways[i][before].cost + cost;
-        if (!(sum < ways[j][kind].cost)) continue;
-        ways[j][kind] = {sum, i, before, piece};
-        ways[j][kind].last.cost = cost;
+    const auto least = [&](int i) {
+      double cost = 1e300;
+      for (const Way& way : ways[i]) cost = std::min(cost, way.cost);
+      return cost;
+    };
+    const auto extend = [&](int i, int j, const RunPiece& piece) {
+      if (!piece.fit.ok()) return;
+      Way& to = ways[j][family_of(piece.fit.kind)];
+      for (int f = 0; f < kFamilies; ++f) {
+        const Way& way = ways[i][f];
+        const double cost = piece.cost + (way.from < 0 ? 0 : joint(way.last, piece));
+        if (!(way.cost + cost < to.cost)) continue;
+        to = {way.cost + cost, i, f, piece};
+        to.last.cost = cost;
       }
     };
     for (int j = 1; j < n; ++j)
       for (int i = j - 1; i >= 0; --i) {
         // Neighbours share the point between them.
         const int end = std::min(b, at[j] + (j + 1 < n ? 1 : 0));
-        const double before = std::min(ways[i][0].cost, ways[i][1].cost);
-        const double now = std::min(ways[j][0].cost, ways[j][1].cost);
-        if (end - at[i] < options_.min_points || before - saving() >= now) continue;
-        RunPiece piece = plain(at[i], end, false);
-        if (piece.cost > price(StrokeKind::kBezier) - saving()) extend(i, j, 1, cubic(at[i], end));
-        extend(i, j, 0, std::move(piece));
+        if (end - at[i] < options_.min_points || least(i) - kMostSaved * options_.price >= least(j))
+          continue;
+        const RunPiece piece = plain(at[i], end, false);
+        if (piece.cost > price(StrokeKind::kBezier) - kMostSaved * options_.price)
+          extend(i, j, cubic(at[i], end));
+        extend(i, j, piece);
       }
     std::vector<RunPiece> out;
-    int kind = ways[n - 1][1].cost < ways[n - 1][0].cost;
+    int family = 0;
+    for (int f = 1; f < kFamilies; ++f)
+      if (ways[n - 1][f].cost < ways[n - 1][family].cost) family = f;
     for (int j = n - 1; j > 0;) {
-      const Way& way = ways[j][kind];
+      const Way& way = ways[j][family];
+      if (way.from < 0) return {};
       out.push_back(way.last);
-      j = way.from, kind = way.from_kind;
+      j = way.from, family = way.from_family;
     }
     std::reverse(out.begin(), out.end());
     return out;
@@ -139,19 +160,19 @@ class Cutter {
   // Moves every cut to where its two curves, of whatever kind, cost least.
   void settle(std::vector<RunPiece>* pieces) const {
     std::vector<RunPiece>& p = *pieces;
-    for (size_t k = p.size(); k-- > 1;) p[k].cost += saving_after(p[k - 1], p[k]);
+    for (size_t k = p.size(); k-- > 1;) p[k].cost -= joint(p[k - 1], p[k]);
     const int reach = p.empty() ? 0 : (p.back().last - p[0].first) / kMostCuts + 1;
     for (int sweep = 0; sweep < 2; ++sweep)
       for (size_t k = 0; k + 1 < p.size(); ++k) settle(k, reach, &p);
-    for (size_t k = p.size(); k-- > 1;) p[k].cost -= saving_after(p[k - 1], p[k]);
+    for (size_t k = p.size(); k-- > 1;) p[k].cost += joint(p[k - 1], p[k]);
   }
 
   void settle(size_t k, int reach, std::vector<RunPiece>* pieces) const {
     std::vector<RunPiece>& p = *pieces;
     const int first = p[k].first, last = p[k + 1].last;
     const auto cost = [&](const RunPiece& x, const RunPiece& y) {
-      return x.cost + y.cost - saving_after(x, y) - (k > 0 ? saving_after(p[k - 1], x) : 0) -
-             (k + 2 < p.size() ? saving_after(y, p[k + 2]) : 0);
+      return x.cost + y.cost + joint(x, y) + (k > 0 ? joint(p[k - 1], x) : 0) +
+             (k + 2 < p.size() ? joint(y, p[k + 2]) : 0);
     };
     double least = cost(p[k], p[k + 1]);
     for (int step = std::max(1, reach / kTries);; step /= 2) {
@@ -165,13 +186,6 @@ class Cutter {
       }
       if (step == 1) return;
     }
-  }
-
-  double saving_after(const RunPiece& x, const RunPiece& y) const {
-    return follows(x, y) ? saving() : 0;
-  }
-  static bool follows(const RunPiece& x, const RunPiece& y) {
-    return x.fit.kind == StrokeKind::kBezier && y.fit.kind == StrokeKind::kBezier;
   }
 
   const Matrix3Xd& p_;
@@ -198,13 +212,20 @@ constexpr double kFar = 4;  // [sigma] pieces whose points lie farther are no cu
 
 }  // namespace
 
-double description_length(const Eigen::VectorXd& distance, double sigma, StrokeKind kind,
-                          const SegmentOptions& options) {
-  const auto nats = (distance.array() / sigma).square() / 2;
-  return nats.min(kOutlier).sum() + options.price * num_parameters(kind);
+double misfit(const Eigen::VectorXd& distance, double sigma) {
+  return ((distance.array() / sigma).square() / 2).min(kOutlierNats).sum();
 }
 
-double smooth_saving(const SegmentOptions& options) { return 2 * options.price; }
+double description_length(const Eigen::VectorXd& distance, double sigma, StrokeKind kind,
+                          const SegmentOptions& options) {
+  return misfit(distance, sigma) + options.price * num_parameters(kind);
+}
+
+double joint_cost(StrokeKind before, StrokeKind after, const SegmentOptions& options) {
+  const Family x = family_of(before), y = family_of(after);
+  if (x != y) return kSwitch * options.price;
+  return x == kFree ? -2 * options.price : 0;
+}
 
 std::vector<RunPiece> cut_run(const Matrix3Xd& points, const Matrix3Xd& tangents, bool closed,
                               double sigma, double unit, const SegmentOptions& options) {

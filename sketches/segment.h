@@ -28,13 +28,21 @@ constexpr int num_parameters(StrokeKind kind) {
                                             : 8;
 }
 
-/// Length of a description [nat]: the points' squared distances from the curve in units of 2
-/// sigma^2, each at most 8 (an outlier), and the price of the curve's parameters.
+/// What points at these distances from a curve cost [nat]: their squares in units of 2 sigma^2,
+/// each at most kOutlierNats.
+constexpr double kOutlierNats = 8;
+double misfit(const Eigen::VectorXd& distance, double sigma);
+
+/// Length of a description [nat]: the misfit and the price of the curve's parameters.
 double description_length(const Eigen::VectorXd& distance, double sigma, StrokeKind kind,
                           const SegmentOptions& options);
 
-/// What a cubic after a cubic saves [nat]: it goes on smoothly, so its first tangent is known.
-double smooth_saving(const SegmentOptions& options);
+/// What it costs [nat], or saves, that a curve of one kind goes on from one of another within a
+/// run:
+///   - a cubic after a cubic goes on smoothly, so its first tangent is known;
+///   - lines and arcs run into one another, and so do cubics, in a spline; that one turns into the
+///     other, or into an arc of an ellipse, is rare on parts, and has to be said.
+double joint_cost(StrokeKind before, StrokeKind after, const SegmentOptions& options);
 
 /// Points [first, last) of a run and their curve.
 struct RunPiece {
