@@ -89,11 +89,8 @@ void list_optimize(OptimizeOptions* o, Fields* f) {
 void list_topology(TopologyOptions* o, Fields* f) {
   f->group("Simplifying the graph");
   f->add("merge-ends", &o->endpoint_px, "px", 0, 100, "Ends that may become one");
-  f->add("merge-overlap", &o->overlap_px, "px", 0, 100, "Distance of curves drawn twice");
   f->add("merge-gap", &o->gap_px, "px", 0, 1000, "Gap between pieces of one curve");
-  f->add("merge-offset", &o->offset_px, "px", 0, 100, "Offset between pieces of one line");
-  f->add("merge-joint", &o->joint_px, "px", 0, 100,
-         "Of both pieces from the curve that replaces them");
+  f->add("merge-offset", &o->offset_px, "px", 0, 100, "Offset between pieces of one curve");
 }
 
 void list_polish(PolishOptions* o, Fields* f) {
@@ -162,8 +159,9 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfel-smooth-angle", &o->smooth_angle_deg, "deg", 1, 90, "Turn that neighbours keep");
   f->add("surfel-carving", &o->hull.sweeps, "sweeps", 0, 10000,
          "Of the first surface, where views disagree");
-  f->add("surfel-sights", &o->hull.sights, "lines", 0, 1e6,
-         "Lines of sight to edges through a cell of the first surface that empty it; 0 looks at none");
+  f->add(
+      "surfel-sights", &o->hull.sights, "lines", 0, 1e6,
+      "Lines of sight to edges through a cell of the first surface that empty it; 0 looks at none");
   f->add("surfel-mode", &o->mode_deg, "deg", 0, 90,
          "Turn of what is one surface at a pixel; 0 blends all surfels");
   f->add("surfel-shading-pull", &o->shading_pull, "", 0, 1,

@@ -116,6 +116,21 @@ RegularizeOptions regularize_options(const ReconstructOptions& options) {
   return regularize;
 }
 
+// The graph that says what the edgels do in fewer words.
+Simplified simpler_graph(const Sketch& sketch, const EdgeWorld& world,
+                         const ReconstructOptions& options) {
+  const Observation o = observe_places(sketch, world);
+  StrokePoints points;
+  for (int s = 0; s < sketch.size(); ++s) points.push_back(measure(o, s, world.footprint).point);
+  TopologyOptions topology = options.topology;
+  topology.footprint = world.footprint;
+  topology.price = options.segment.price;
+  topology.sigma_px = place_sigma_px(o, options.rechain.sigma_px);
+  const double size_px = world.bounds.diagonal().norm() / world.footprint;
+  topology.node_price = 3 * std::log(std::max(1.0, size_px / topology.sigma_px));
+  return simplify(sketch, topology, points);
+}
+
 void count_regularities(const Regularized& regular, RunReport* report) {
   for (int k = 0; k < kRelationKinds; ++k) {
     const RelationKind kind = RelationKind(k);
@@ -128,12 +143,12 @@ void count_regularities(const Regularized& regular, RunReport* report) {
 }
 
 // Chains of strokes in as few words as their edgels allow.
-Sketch rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
-  if (!options.rechain.on) return sketch;
+Round rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
+  if (!options.rechain.on) return {sketch, false};
   const Spliced spliced = splice(sketch, world, options.splice);
   const Rechained r = rechain(spliced.sketch, world, options.segment, options.rechain);
   const bool changed = spliced.overlaps + spliced.gaps + r.changes > 0;
-  return changed ? polish(r.sketch, world, early(options)) : sketch;
+  return {changed ? polish(r.sketch, world, early(options)) : sketch, changed};
 }
 
 }  // namespace
@@ -149,7 +164,7 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
   report->counts.push_back({"strokes_lifted", double(first.size())});
   stage.result(std::to_string(chosen.size()) + " of " + std::to_string(first.size()) +
                " strokes stand");
-  return rewritten(grown(chosen, world, options), world, options);
+  return rewritten(grown(chosen, world, options), world, options).sketch;
 }
 
 Round run_round(const Sketch& sketch, const EdgeWorld& world,
@@ -163,16 +178,13 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
                  {"strokes_before", double(sketch.size())}};
   Round round{moved.sketch, false};
   if (options.simplify) {
-    TopologyOptions topology = options.topology;
-    topology.footprint = world.footprint;
-    const Simplified simpler = simplify(moved.sketch, topology);
+    const Simplified simpler = simpler_graph(moved.sketch, world, options);
     for (const auto& [name, count] : simpler.counts.named()) row.push_back({name, double(count)});
-    round.changed = simpler.counts.total() > 0;
-    const Sketch written = rewritten(grown(simpler.sketch, world, options), world, options);
-    const Selection chosen = select_strokes(written, world, options.select);
-    note_verdicts(written, chosen, progress);
+    const Round written = rewritten(grown(simpler.sketch, world, options), world, options);
+    const Selection chosen = select_strokes(written.sketch, world, options.select);
+    note_verdicts(written.sketch, chosen, progress);
     row.push_back({"unexplaining", double(chosen.changes)});
-    round.changed |= chosen.changes > 0;
+    round.changed = simpler.counts.total() > 0 || written.changed || chosen.changes > 0;
     round.sketch = chosen.sketch;
   }
   row.push_back({"strokes", double(round.sketch.size())});
@@ -200,14 +212,16 @@ Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
   lift.min_views = std::min(lift.min_views, kSecondViews);
   const Sketch first =
       polish(initial_sketch(lift_edges(rest, lift), rest.footprint, options), rest, early(options));
-  const Sketch more = rewritten(grown(first, rest, options), rest, options);
+  const Sketch more = rewritten(grown(first, rest, options), rest, options).sketch;
   Sketch both = sketch;
   append_strokes(more, &both);
   const Selection chosen = select_strokes(both, world, options.select);
   std::vector<bool> keep(both.size(), true);
   int added = 0;
   for (int i = sketch.size(); i < both.size(); ++i) {
-    keep[i] = chosen.verdicts[i] == Verdict::kKept &&
+    // Most of what is left are contours. Some lie still by chance, so stillness is no excuse here.
+    const bool unseen = chosen.seen[i] >= 0 && chosen.seen[i] < options.select.min_seen;
+    keep[i] = chosen.verdicts[i] == Verdict::kKept && !unseen &&
               chosen.stats[i].length_px >= kLonger * options.select.min_length_px;
     added += keep[i];
   }

@@ -16,7 +16,7 @@ double Piece::trust() const {
 
 double Piece::support() const { return samples.length * trust(); }
 
-Draft::Draft(const Sketch& sketch) {
+Draft::Draft(const Sketch& sketch, const StrokePoints& points) {
   for (int n = 0; n < sketch.nodes.cols(); ++n) nodes.push_back(sketch.nodes.col(n));
   for (int s = 0; s < sketch.size(); ++s) {
     const Stroke& stroke = sketch.strokes[s];
@@ -28,6 +28,7 @@ Draft::Draft(const Sketch& sketch) {
     piece.end = stroke.end;
     piece.evidence = sketch.evidence[s];
     pieces.push_back(piece);
+    if (!points.empty()) pieces.back().points = points[s];
     if (is_sound(piece.curve))
       pieces.back().samples = sample_curve(piece.curve);
     else
@@ -78,6 +79,7 @@ PassResult Draft::finish() const {
                                          p.curve.p.begin() + first + num_handles(p.curve.kind));
     const int begin = renumber(p.begin), end = renumber(p.end);
     index[i] = out.sketch.add_stroke(p.curve.kind, begin, end, handles, p.evidence);
+    out.points.push_back(p.points);
   }
   for (int i = 0; i < size(); ++i) {
     int k = i;

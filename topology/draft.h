@@ -15,7 +15,8 @@ struct Piece {
   PlainCurve curve;
   int begin = -1, end = -1;  ///< nodes of the draft; -1 if closed
   Evidence evidence;
-  CurveSamples samples;  ///< of `curve`, kept up to date by Draft
+  CurveSamples samples;     ///< of `curve`, kept up to date by Draft
+  Eigen::Matrix3Xd points;  ///< where the images put it, in no order
   bool alive = true;
   int into = -1;  ///< if dead: the piece that it was merged into, or -1 if removed
 
@@ -31,7 +32,8 @@ struct Draft {
   std::vector<Piece> pieces;
   int changes = 0;
 
-  explicit Draft(const Sketch& sketch);
+  /// `points`: one entry per stroke, or none.
+  explicit Draft(const Sketch& sketch, const StrokePoints& points);
   PassResult finish() const;
 
   int size() const { return int(pieces.size()); }

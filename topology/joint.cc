@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "topology/description.h"
 
 namespace sketchsplat {
 namespace {
@@ -25,6 +28,9 @@ void apply(const Merge& m, Draft* draft) {
   draft->pieces[m.b].alive = false;
   draft->pieces[m.b].into = m.a;
   draft->pieces[m.a].evidence = evidence;
+  Eigen::Matrix3Xd points(3, draft->pieces[m.a].points.cols() + draft->pieces[m.b].points.cols());
+  points << draft->pieces[m.a].points, draft->pieces[m.b].points;
+  draft->pieces[m.a].points = points;
   draft->replace(m.a, m.curve, m.begin, m.end);
   ++draft->changes;
 }
@@ -35,19 +41,27 @@ bool boxes_within(const CurveSamples& a, const CurveSamples& b, double reach) {
   return ((a.low - b.high).array() <= slack).all() && ((b.low - a.high).array() <= slack).all();
 }
 
-// Largest distance of a piece's samples from the curve; infinite if a tangent disagrees.
-double deviation(const PlainCurve& curve, const CurveSamples& samples, const Piece& piece,
-                 const JointLimits& limits) {
-  const double least = std::cos(limits.angle_deg * M_PI / 180);
-  double worst = 0;
-  for (int k = 0; k < piece.samples.position.cols(); ++k) {
-    const Closest c = closest_point(curve, samples, piece.samples.position.col(k));
-    const double cosine = std::abs(c.tangent.dot(piece.samples.tangent.col(k)));
-    const bool defined = c.tangent.norm() > 0.5 && piece.samples.tangent.col(k).norm() > 0.5;
-    if (!(c.distance <= limits.distance) || (defined && cosine < least)) return INFINITY;
-    worst = std::max(worst, c.distance);
-  }
-  return worst;
+// How many nodes of two pieces are of no use once one curve between two of them, or a closed one,
+// takes their place.
+int nodes_lost(const Draft& draft, const std::vector<int>& degrees, const Merge& m) {
+  std::set<int> nodes;
+  for (int piece : {m.a, m.b})
+    for (int node : {draft.pieces[piece].begin, draft.pieces[piece].end})
+      if (node >= 0 && node != m.begin && node != m.end &&
+          others_at(draft, degrees, node, m.a, m.b) == 0)
+        nodes.insert(node);
+  return int(nodes.size());
+}
+
+// [nat] by which the description grows.
+double growth(const Draft& draft, const std::vector<int>& degrees, const Merge& m,
+              const TopologyOptions& options) {
+  const Piece &a = draft.pieces[m.a], &b = draft.pieces[m.b];
+  const int parameters =
+      own_parameters(m.curve.kind) - own_parameters(a.curve.kind) - own_parameters(b.curve.kind);
+  return options.price * parameters - options.node_price * nodes_lost(draft, degrees, m) +
+         misfit(m.curve, a.points, options) + misfit(m.curve, b.points, options) -
+         misfit(a.curve, a.points, options) - misfit(b.curve, b.points, options);
 }
 
 std::vector<Merge> proposals(Propose propose, double reach, const TopologyOptions& options,
@@ -79,7 +93,8 @@ int others_at(const Draft& draft, const std::vector<int>& degrees, int node, int
 }
 
 std::optional<Merge> settle(const Draft& draft, const std::vector<int>& degrees, int a, int b,
-                            const PlainCurve& fit, int begin, int end, const JointLimits& limits) {
+                            const PlainCurve& fit, int begin, int end, double max_length,
+                            const TopologyOptions& options) {
   Merge m;
   m.a = a;
   m.b = b;
@@ -94,12 +109,9 @@ std::optional<Merge> settle(const Draft& draft, const std::vector<int>& degrees,
     m.curve = move_ends(fit, p0, p1);
   }
   if (!is_sound(m.curve)) return std::nullopt;
-  const CurveSamples samples = sample_curve(m.curve);
-  if (!(samples.length <= limits.max_length)) return std::nullopt;
-  const double d = std::max(deviation(m.curve, samples, draft.pieces[a], limits),
-                            deviation(m.curve, samples, draft.pieces[b], limits));
-  if (!(d <= limits.distance)) return std::nullopt;
-  m.cost = limits.distance > 0 ? d / limits.distance : 0;
+  if (!(sample_curve(m.curve).length <= max_length)) return std::nullopt;
+  m.cost = growth(draft, degrees, m, options);
+  if (!(m.cost < 0)) return std::nullopt;
   return m;
 }
 

@@ -15,20 +15,15 @@ struct Merge {
   int a = -1, b = -1;
   PlainCurve curve;
   int begin = -1, end = -1;
-  double cost = 0;  ///< smaller is done first; pure number
+  double cost = 0;  ///< [nat] by which the description grows; the least is done first
 };
 
-/// What the one curve must keep to.
-struct JointLimits {
-  double distance;    ///< of every sample of both pieces from it, world units
-  double angle_deg;   ///< between its tangent and that of every sample
-  double max_length;  ///< world units
-};
-
-/// Ties a fitted curve to its end nodes and checks it: a node that other strokes share stays and
-/// the curve follows; any other node follows the curve. `degrees` as Draft::degrees.
+/// Ties a fitted curve to its end nodes: a node that other strokes share stays and the curve
+/// follows; any other node follows the curve. Nothing if it is longer than `max_length`, world
+/// units, or if it makes the description no shorter. `degrees` as Draft::degrees.
 std::optional<Merge> settle(const Draft& draft, const std::vector<int>& degrees, int a, int b,
-                            const PlainCurve& fit, int begin, int end, const JointLimits& limits);
+                            const PlainCurve& fit, int begin, int end, double max_length,
+                            const TopologyOptions& options);
 
 /// Number of ends of pieces other than a and b at a node.
 int others_at(const Draft& draft, const std::vector<int>& degrees, int node, int a, int b);

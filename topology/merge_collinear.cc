@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "topology/description.h"
 #include "topology/joint.h"
 #include "topology/passes.h"
 
@@ -10,9 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-// A line is taken for a piece of a curve only if the curve is so many times as long.
-constexpr double kLineShare = 3;
 
 // One end of a piece.
 struct End {
@@ -59,10 +57,10 @@ bool is_free(const Context& c, End x, End y) {
   return true;
 }
 
-JointLimits limits_of(const Context& c, int gaps) {
-  const double both = c.piece(c.a).samples.length + c.piece(c.b).samples.length;
-  return {c.px(c.options.joint_px), c.options.joint_angle_deg,
-          both + gaps * c.px(c.options.gap_px) + 2 * c.px(c.options.joint_px)};
+// A bound on the union, which might else go round the other way.
+double longest(const Context& c, int gaps) {
+  return c.piece(c.a).samples.length + c.piece(c.b).samples.length +
+         (gaps + 1) * c.px(c.options.gap_px);
 }
 
 // Ties a fit to the far ends of the two pieces; x and y are the ends that vanish.
@@ -71,14 +69,14 @@ std::optional<Merge> tie(const Context& c, PlainCurve fit, End x, End y) {
   if (fit.closed()) {
     // Closed by two gaps: the far ends vanish too.
     if (!is_free(c, u, v)) return std::nullopt;
-    return settle(c.draft, c.degrees, c.a, c.b, fit, -1, -1, limits_of(c, 2));
+    return settle(c.draft, c.degrees, c.a, c.b, fit, -1, -1, longest(c, 2), c.options);
   }
   const Vector3d pu = point_of(c.draft, u), pv = point_of(c.draft, v);
   const double as_is = (fit.begin() - pu).norm() + (fit.end() - pv).norm();
   const double swapped = (fit.begin() - pv).norm() + (fit.end() - pu).norm();
   if (swapped < as_is) fit = backwards(fit);
   return settle(c.draft, c.degrees, c.a, c.b, fit, node_of(c.draft, u), node_of(c.draft, v),
-                limits_of(c, 1));
+                longest(c, 1), c.options);
 }
 
 std::optional<Merge> join_lines(const Context& c) {
@@ -99,9 +97,7 @@ std::optional<Merge> join_lines(const Context& c) {
   const End x{longer, after}, y{shorter, after ? x1 < x0 : x1 > x0};
   if (!is_free(c, x, y)) return std::nullopt;
   const auto fit = refit_line({run_of(c.piece(c.a)), run_of(c.piece(c.b))});
-  auto m = fit ? tie(c, *fit, x, y) : std::nullopt;
-  if (m) m->cost += gap > 0 ? gap / c.px(c.options.gap_px) : 0;
-  return m;
+  return fit ? tie(c, *fit, x, y) : std::nullopt;
 }
 
 // Pairs of ends (one of either piece), nearest first.
@@ -145,12 +141,10 @@ std::optional<Merge> join_arcs(const Context& c) {
         lost = p;
       }
     }
-    if (!(least <= 4 * c.px(c.options.joint_px))) return std::nullopt;
+    if (!(least <= c.px(c.options.gap_px))) return std::nullopt;
   }
   if (!is_free(c, lost.first, lost.second)) return std::nullopt;
-  auto m = tie(c, *fit, lost.first, lost.second);
-  if (m) m->cost += fit->closed() ? 0 : 0.5;
-  return m;
+  return tie(c, *fit, lost.first, lost.second);
 }
 
 // Arc length from the end x of one piece to the begin y of the next, negative if they overlap;
@@ -197,28 +191,22 @@ std::optional<Merge> continue_curve(const Context& c, End x, End y, double step,
   return fit ? tie(c, *fit, x, y) : std::nullopt;
 }
 
-bool line_is_short(const Piece& a, const Piece& b) {
-  if (a.curve.kind == StrokeKind::kLine) return kLineShare * a.samples.length <= b.samples.length;
-  return b.curve.kind != StrokeKind::kLine || kLineShare * b.samples.length <= a.samples.length;
-}
-
 std::optional<Merge> join_curves(const Context& c) {
-  if (!line_is_short(c.piece(c.a), c.piece(c.b)) || !touch(c)) return std::nullopt;
-  // The simplest kind that serves, up to what one of the two is.
+  if (!touch(c)) return std::nullopt;
+  // An arc, or what one of the two is.
   std::vector<StrokeKind> kinds = {StrokeKind::kArc};
   for (StrokeKind kind : {StrokeKind::kEllipticArc, StrokeKind::kBezier})
     if (c.piece(c.a).curve.kind == kind || c.piece(c.b).curve.kind == kind) kinds.push_back(kind);
+  std::optional<Merge> best;
   for (const auto& [x, y] : facing_ends(c)) {
     const double step = step_between(c, x, y);
     if (std::isnan(step) || !is_free(c, x, y)) continue;
     for (StrokeKind kind : kinds) {
-      auto m = continue_curve(c, x, y, step, kind);
-      if (!m) continue;
-      if (step > 0) m->cost += step / c.px(c.options.gap_px);
-      return m;
+      const auto m = continue_curve(c, x, y, step, kind);
+      if (m && (!best || m->cost < best->cost)) best = m;
     }
   }
-  return std::nullopt;
+  return best;
 }
 
 std::optional<Merge> propose(const Draft& draft, const std::vector<int>& degrees, int a, int b,
@@ -235,8 +223,9 @@ std::optional<Merge> propose(const Draft& draft, const std::vector<int>& degrees
 
 }  // namespace
 
-PassResult merge_collinear(const Sketch& sketch, const TopologyOptions& options) {
-  Draft draft(sketch);
+PassResult merge_collinear(const Sketch& sketch, const TopologyOptions& options,
+                           const StrokePoints& points) {
+  Draft draft(sketch, points.empty() ? drawn_points(sketch, options) : points);
   merge_pairs(propose, options.gap_px * options.footprint, options, &draft);
   return draft.finish();
 }

@@ -259,6 +259,41 @@ std::optional<PlainCurve> refit_arc_between(const Run& points) {
   return if_sound(arc);
 }
 
+namespace {
+
+// Handles by linear least squares at the parameters of the nearest points.
+PlainCurve refit_cubic_between(PlainCurve cubic, const Eigen::Matrix3Xd& points) {
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    const CurveSamples samples = sample_curve(cubic);
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Matrix<double, 2, 3> pull = Eigen::Matrix<double, 2, 3>::Zero();
+    for (int i = 0; i < points.cols(); ++i) {
+      const double t = closest_point(cubic, samples, points.col(i)).t, u = 1 - t;
+      const Eigen::Vector2d basis(3 * u * u * t, 3 * u * t * t);
+      const Vector3d rest = points.col(i) - u * u * u * cubic.p[0] - t * t * t * cubic.p[3];
+      normal += basis * basis.transpose();
+      pull += basis * rest.transpose();
+    }
+    // Points all over the curve make the smaller eigenvalue a twentieth of the trace.
+    if (!(normal.determinant() > 1e-3 * std::pow(normal.trace(), 2))) return cubic;
+    const Eigen::Matrix<double, 2, 3> handles = normal.inverse() * pull;
+    cubic.p[1] = handles.row(0);
+    cubic.p[2] = handles.row(1);
+  }
+  return cubic;
+}
+
+}  // namespace
+
+PlainCurve refit_between(const PlainCurve& curve, const Eigen::Matrix3Xd& points) {
+  if (curve.kind == StrokeKind::kBezier) return refit_cubic_between(curve, points);
+  if (curve.kind != StrokeKind::kArc || points.cols() == 0) return curve;
+  Run run{Eigen::Matrix3Xd(3, points.cols() + 2), VectorXd::Ones(points.cols() + 2)};
+  run.position << curve.begin(), points, curve.end();
+  return refit_arc_between(run).value_or(curve);
+}
+
 std::optional<PlainCurve> refit_bezier(const Run& points, VectorXd t) {
   return refit_linear(StrokeKind::kBezier, points, std::move(t));
 }

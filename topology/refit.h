@@ -34,6 +34,11 @@ std::optional<PlainCurve> refit_arc(const std::vector<Run>& runs, double closing
 /// ends and the mean of the points. Nothing if the ends coincide.
 std::optional<PlainCurve> refit_arc_between(const Run& points);
 
+/// The open curve between its own ends that fits the points (3 x n, in any order) best: an arc by
+/// its sagitta, a cubic by its handles. Lines and elliptic arcs, and whatever the points do not
+/// tell, stay as they are.
+PlainCurve refit_between(const PlainCurve& curve, const Eigen::Matrix3Xd& points);
+
 /// Cubic by least squares from start parameters `t` (any scale, smallest becomes 0, largest 1),
 /// alternating with the parameters of the nearest points (Hoschek 1988).
 std::optional<PlainCurve> refit_bezier(const Run& points, Eigen::VectorXd t);

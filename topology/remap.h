@@ -18,11 +18,16 @@ struct Remap {
   bool is_identity() const;
 };
 
+/// Where the images put each stroke: 3 x n points along it. A stroke that was merged from others
+/// has the points of all of them.
+using StrokePoints = std::vector<Eigen::Matrix3Xd>;
+
 /// What every topology pass returns.
 struct PassResult {
   Sketch sketch;
   Remap remap;
-  int changes = 0;  ///< merges, conversions or removals made
+  int changes = 0;      ///< merges, conversions or removals made
+  StrokePoints points;  ///< of the strokes of `sketch`; none if the pass does not ask for them
 };
 
 }  // namespace sketchsplat

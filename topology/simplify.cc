@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "topology/simplify.h"
 
+#include "topology/description.h"
+
 namespace sketchsplat {
 
 namespace {
@@ -10,16 +12,20 @@ constexpr int kMaxRounds = 20;
 std::vector<std::pair<std::string, int>> SimplifyCounts::named() const {
   return {{"low_opacity", low_opacity},
           {"unseen", unseen},
-          {"overlaps", overlaps},
           {"collinear", collinear},
           {"endpoints", endpoints}};
 }
 
-Simplified simplify(const Sketch& sketch, const TopologyOptions& options) {
-  Simplified out{sketch, Remap::identity(sketch.size()), {}, true};
+Simplified simplify(const Sketch& sketch, const TopologyOptions& options,
+                    const StrokePoints& points) {
+  Simplified out;
+  out.sketch = sketch;
+  out.remap = Remap::identity(sketch.size());
+  StrokePoints at = points.empty() ? drawn_points(sketch, options) : points;
   const auto take = [&](PassResult result, int* count) {
     out.remap = Remap::compose(out.remap, result.remap);
     out.sketch = std::move(result.sketch);
+    at = std::move(result.points);
     *count += result.changes;
   };
   SimplifyCounts& n = out.counts;
@@ -29,12 +35,13 @@ Simplified simplify(const Sketch& sketch, const TopologyOptions& options) {
       break;
     }
     before = n.total();
-    take(remove_low_opacity(out.sketch, options.min_opacity), &n.low_opacity);
-    take(visibility_filter(out.sketch, options.min_support_views, options.max_rms_px), &n.unseen);
-    take(merge_overlaps(out.sketch, options), &n.overlaps);
-    take(merge_collinear(out.sketch, options), &n.collinear);
-    take(merge_endpoints(out.sketch, options), &n.endpoints);
+    take(remove_low_opacity(out.sketch, options.min_opacity, at), &n.low_opacity);
+    take(visibility_filter(out.sketch, options.min_support_views, options.max_rms_px, at),
+         &n.unseen);
+    take(merge_collinear(out.sketch, options, at), &n.collinear);
+    take(merge_endpoints(out.sketch, options, at), &n.endpoints);
   }
+  out.points = std::move(at);
   return out;
 }
 

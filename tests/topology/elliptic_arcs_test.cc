@@ -62,18 +62,6 @@ TEST(EllipticArcs, OfTwoEllipsesStayApart) {
   EXPECT_EQ(merge_collinear(s, one_pixel()).sketch.size(), 2);
 }
 
-TEST(EllipticArcs, DrawnTwiceBecomeOne) {
-  Sketch s;
-  add_elliptic(&s, kU, kV, 0, 200);
-  add_elliptic(&s, kU, kV, 60, 170, true);
-  for (int k : {2, 3}) s.nodes.col(k) += Vector3d(0.2, -0.3, 0.1);
-  const PassResult r = merge_overlaps(s, one_pixel());
-  expect_sound(r, s);
-  ASSERT_EQ(r.sketch.size(), 1);
-  EXPECT_EQ(r.sketch.strokes[0].kind, StrokeKind::kEllipticArc);
-  EXPECT_LT(off_ellipse(r.sketch, 0), 0.5);
-}
-
 TEST(EllipticArcs, KeepTheirShapeWhenTheirEndsMove) {
   Sketch s;
   add_elliptic(&s, kU, kV, 20, 170);

@@ -14,7 +14,7 @@
 namespace sketchsplat {
 namespace {
 
-using Pass = std::function<PassResult(const Sketch&, const TopologyOptions&)>;
+using Pass = std::function<PassResult(const Sketch&, const TopologyOptions&, const StrokePoints&)>;
 
 struct Named {
   const char* name;
@@ -22,14 +22,15 @@ struct Named {
 };
 std::vector<Named> all_passes() {
   return {{"merge_endpoints", merge_endpoints},
-          {"merge_overlaps", merge_overlaps},
           {"merge_collinear", merge_collinear},
           {"remove_low_opacity",
-           [](const Sketch& s, const TopologyOptions&) { return remove_low_opacity(s, 0.5); }},
-          {"simplify", [](const Sketch& s, const TopologyOptions& options) {
-             Simplified r = simplify(s, options);
+           [](const Sketch& s, const TopologyOptions&, const StrokePoints& points) {
+             return remove_low_opacity(s, 0.5, points);
+           }},
+          {"simplify", [](const Sketch& s, const TopologyOptions& o, const StrokePoints& points) {
+             Simplified r = simplify(s, o, points);
              EXPECT_TRUE(r.settled);
-             return PassResult{r.sketch, r.remap, r.counts.total()};
+             return PassResult{r.sketch, r.remap, r.counts.total(), r.points};
            }}};
 }
 
@@ -168,7 +169,7 @@ TEST(Invariants, EveryPassLeavesASoundSketchAndAConsistentRemap) {
     const Sketch s = random_sketch(seed, 12);
     for (const auto& [name, pass] : all_passes()) {
       SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
-      const PassResult r = pass(s, one_pixel());
+      const PassResult r = pass(s, one_pixel(), {});
       expect_sound(r, s);
       EXPECT_EQ(r.changes == 0, r.remap.is_identity() && difference(s, r.sketch, 1e-3) < 1e-9 &&
                                     s.nodes.cols() == r.sketch.nodes.cols());
@@ -181,7 +182,7 @@ TEST(Invariants, TheRandomSketchesGiveEveryPassSomethingToDo) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     int k = 0;
     for (const auto& [name, pass] : all_passes())
-      changes[k++] += pass(random_sketch(seed, 12), one_pixel()).changes;
+      changes[k++] += pass(random_sketch(seed, 12), one_pixel(), {}).changes;
   }
   EXPECT_THAT(changes, testing::Each(testing::Gt(kSeeds)));
 }
@@ -191,7 +192,8 @@ TEST(Invariants, ASecondCallChangesNothing) {
     const Sketch s = random_sketch(seed, 12);
     for (const auto& [name, pass] : all_passes()) {
       SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
-      const PassResult first = pass(s, one_pixel()), second = pass(first.sketch, one_pixel());
+      const PassResult first = pass(s, one_pixel(), {}),
+                       second = pass(first.sketch, one_pixel(), first.points);
       EXPECT_EQ(second.changes, 0);
       EXPECT_TRUE(second.remap.is_identity());
       EXPECT_EQ(second.sketch.nodes, first.sketch.nodes);
@@ -207,7 +209,7 @@ TEST(Invariants, TheOrderOfTheStrokesDoesNotMatter) {
     const Sketch shuffled = permuted(s, seed, &order);
     for (const auto& [name, pass] : all_passes()) {
       SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
-      const PassResult r = pass(s, one_pixel()), q = pass(shuffled, one_pixel());
+      const PassResult r = pass(s, one_pixel(), {}), q = pass(shuffled, one_pixel(), {});
       EXPECT_EQ(r.changes, q.changes);
       EXPECT_LT(difference(r.sketch, q.sketch, 1e-3), 1e-5);
       // The same strokes were merged with one another.
@@ -230,8 +232,8 @@ TEST(Invariants, RotationTranslationAndScaleDoNotMatter) {
       TopologyOptions options;
       options.footprint = scale;
       const Vector3d shift(40, -70, 10);
-      const PassResult r = pass(s, one_pixel());
-      const PassResult q = pass(moved(s, rotation, shift, scale), options);
+      const PassResult r = pass(s, one_pixel(), {});
+      const PassResult q = pass(moved(s, rotation, shift, scale), options, {});
       EXPECT_EQ(r.remap.stroke, q.remap.stroke);
       EXPECT_LT(difference(moved(r.sketch, rotation, shift, scale), q.sketch, 1e-3 * scale),
                 1e-5 * scale);
@@ -244,7 +246,7 @@ TEST(Invariants, LengthGrowsByTheGapsAtMost) {
     const Sketch s = random_sketch(seed, 12);
     for (const auto& [name, pass] : all_passes()) {
       SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
-      const PassResult r = pass(s, one_pixel());
+      const PassResult r = pass(s, one_pixel(), {});
       EXPECT_LE(total_length(r.sketch), total_length(s) + 6 * r.changes);
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/topology/build_sketch.h"
+#include "topology/description.h"
 
 namespace sketchsplat {
 namespace {
@@ -46,6 +47,31 @@ TEST(MergeCollinear, AWideGapAnOffsetOrAnAngleKeepsLinesApart) {
   add_line(&angle, {50, 0, 0}, {99, 6, 0});
   for (const Sketch& s : {gap, offset, angle})
     EXPECT_EQ(merge_collinear(s, one_pixel()).changes, 0);
+}
+
+TEST(MergeCollinear, WhatTheImagesPutElsewhereStaysTwo) {
+  // Drawn as one line; the images put the second piece aside, or at an angle.
+  Sketch s;
+  add_line(&s, {0, 0, 0}, {50, 0, 0});
+  add_line(&s, {54, 0, 0}, {104, 0, 0});
+  const StrokePoints drawn = drawn_points(s, one_pixel());
+  EXPECT_EQ(merge_collinear(s, one_pixel(), drawn).changes, 1);
+  StrokePoints seen = drawn;
+  seen[1].row(1).array() += 1.5;
+  EXPECT_EQ(merge_collinear(s, one_pixel(), seen).changes, 1) << "they are on neither";
+  s.nodes(1, 2) = s.nodes(1, 3) = 1.2;
+  EXPECT_EQ(merge_collinear(s, one_pixel(), seen).changes, 0);
+}
+
+TEST(MergeCollinear, TheUnionHasThePointsOfBoth) {
+  Sketch s;
+  add_line(&s, {0, 0, 0}, {50, 0, 0});
+  add_line(&s, {54, 0, 0}, {104, 0, 0});
+  add_line(&s, {0, 30, 0}, {0, 60, 0});
+  const PassResult r = merge_collinear(s, one_pixel());
+  ASSERT_EQ(r.points.size(), 2u);
+  EXPECT_EQ(r.points[0].cols(), 50);
+  EXPECT_EQ(r.points[1].cols(), 15);
 }
 
 TEST(MergeCollinear, ANodeThatOthersShareKeepsEdgesSplit) {

@@ -56,6 +56,26 @@ TEST(Refit, AnArcBetweenItsEndsHasTheRightSagitta) {
   }
 }
 
+TEST(Refit, ACurveBetweenItsEndsComesBackToItsPointsInAnyOrder) {
+  Sketch s;
+  add_bezier(&s, {0, 0, 0}, {10, 30, 0}, {40, 30, 10}, {50, 0, 20});
+  add_arc(&s, {0, 0, 0}, 20, 0, 130);
+  for (int i : {0, 1}) {
+    Eigen::Matrix3Xd p = sample_stroke(s, i, 1).rowwise().reverse();
+    p.col(0).swap(p.col(p.cols() / 2));
+    PlainCurve curve;
+    curve.kind = s.strokes[i].kind;
+    const ControlPoints c = control_points(s, i);
+    std::copy_n(c.p.begin(), c.count, curve.p.begin());
+    curve.p[1] += Vector3d(1, -2, 0.5);
+    ASSERT_GT(max_distance(curve, p), 0.5);
+    EXPECT_LT(max_distance(refit_between(curve, p), p), 0.1) << kind_name(curve.kind);
+    // What the points do not tell stays.
+    const PlainCurve same = refit_between(curve, p.leftCols(i == 0 ? 1 : 0));
+    EXPECT_EQ(same.p[1], curve.p[1]);
+  }
+}
+
 TEST(Refit, ACubicIsRecoveredFromChordLengths) {
   Sketch s;
   add_bezier(&s, {0, 0, 0}, {1, 3, 0}, {4, 3, 1}, {5, 0, 2});

@@ -37,7 +37,7 @@ TEST(Filters, TooFewViewsOrTooLargeResidualsGo) {
 }
 
 TEST(Simplify, AFragmentedBoxBecomesTwelveEdgesAndEightCorners) {
-  // Every edge in two pieces with a gap of 4 px, ends 1 px short of the corners, one edge twice.
+  // Every edge in two pieces with a gap of 4 px, ends 1 px short of the corners.
   Sketch s;
   for (int axis = 0; axis < 3; ++axis)
     for (int u : {0, 80})
@@ -57,7 +57,6 @@ TEST(Simplify, AFragmentedBoxBecomesTwelveEdgesAndEightCorners) {
   for (int n = 0; n < s.nodes.cols(); ++n)
     for (int k = 0; k < 3; ++k)
       if (s.nodes(k, n) == 80 || s.nodes(k, n) == 60) s.nodes(k, n) = 100;
-  add_line(&s, {3, 0.4, 0.3}, {97, 0.4, 0.3});
   const Simplified r = simplify(s, one_pixel());
   EXPECT_TRUE(r.settled);
   EXPECT_THAT(validate(r.sketch), testing::IsEmpty());
@@ -68,8 +67,7 @@ TEST(Simplify, AFragmentedBoxBecomesTwelveEdgesAndEightCorners) {
       const double x = r.sketch.nodes(k, n);
       EXPECT_LT(std::min(std::abs(x), std::abs(x - 100)), 0.3);
     }
-  EXPECT_EQ(r.remap.stroke.back(), r.remap.stroke.front());
-  EXPECT_EQ(r.counts.overlaps + r.counts.collinear, 13);
+  EXPECT_EQ(r.counts.collinear, 12);
   EXPECT_GT(r.counts.endpoints, 0);
 }
 
@@ -126,8 +124,8 @@ TEST(Simplify, StrokesWithoutExtentOrWithNanGo) {
                {Vector3d(0, 0, 0), Vector3d(0, 0, 0), Vector3d(0, 0, 0)});
   add_arc(&s, {0, 0, 0}, 0, 0, 90);
   add_line(&s, {0, 0, 0}, {50, 0, 0});
-  for (const auto pass : {merge_endpoints, merge_overlaps, merge_collinear}) {
-    const PassResult r = pass(s, one_pixel());
+  for (const auto pass : {merge_endpoints, merge_collinear}) {
+    const PassResult r = pass(s, one_pixel(), {});
     expect_sound(r, s);
     EXPECT_EQ(r.sketch.size(), 1);
     EXPECT_EQ(r.changes, 6);
