@@ -37,6 +37,12 @@ double place_sigma_px(const Observation& o, double least_px) {
   return std::max(least_px, 0.5 * o.matches.sigma_px);
 }
 
+double node_price(const EdgeWorld& world, double sigma_px) {
+  if (world.bounds.isEmpty() || !(world.footprint > 0)) return 0;
+  const double size_px = world.bounds.diagonal().norm() / world.footprint;
+  return 3 * std::log(std::max(1.0, size_px / sigma_px));
+}
+
 Measured measure(const Observation& o, int stroke, double footprint) {
   const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
   Measured out{o.samples.position.middleCols(first, n), std::vector<char>(n, 0)};

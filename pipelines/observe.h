@@ -47,6 +47,10 @@ Measured measure(const Observation& observation, int stroke, double footprint);
 Observation observe_places(const Sketch& sketch, const EdgeWorld& world);
 double place_sigma_px(const Observation& observation, double least_px);
 
+/// What it takes [nat] to say where a node is, among all places in the scene that can be told
+/// apart.
+double node_price(const EdgeWorld& world, double sigma_px);
+
 /// What the edgels say about one stroke, but for those that are `ignored` (per view and edgel; may
 /// be null). `cover` counts all.
 StrokeStats summarise(const EdgeWorld& world, const Observation& observation, int stroke,

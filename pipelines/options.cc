@@ -61,7 +61,6 @@ void list_segment(SegmentOptions* o, Fields* f) {
 void list_select(SelectOptions* o, Fields* f) {
   f->group("Choosing strokes");
   f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
-  f->add("min-own", &o->min_own, "", 0, 1, "Share of its edgels that no better stroke explains");
   f->add("min-cover", &o->min_cover, "", 0, 1, "Share of its length that enough views see");
   f->add("max-rms", &o->max_rms_px, "px", 0.01, 100,
          "Scatter of its edgels above that of the scene");

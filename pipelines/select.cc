@@ -7,6 +7,7 @@
 
 #include "edges/unexplained.h"
 #include "pipelines/observe.h"
+#include "topology/description.h"
 
 namespace sketchsplat {
 namespace {
@@ -31,23 +32,19 @@ double sharp_width(const Observation& o, int min_views) {
   return 0;
 }
 
-// Edgels of a stroke that nobody owns yet, and the views in which they are a good part of it.
-struct Claim {
-  int edgels = 0, views = 0;
-};
-Claim claim(const Observation& o, int stroke, const EdgelFlags& owned, std::vector<int>* per_view) {
-  Claim c;
+// Number of views in which edgels that nobody owns yet are a good part of a stroke.
+int claim(const Observation& o, int stroke, const EdgelFlags& owned, std::vector<int>* per_view) {
+  int views = 0;
   std::fill(per_view->begin(), per_view->end(), 0);
   for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i)
     for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m) {
       const SampleMatch& match = o.matches.matches[m];
       if (owned[match.view][match.edgel]) continue;
-      ++c.edgels;
       ++(*per_view)[match.view];
     }
   const int needed = std::max(1, o.strokes[stroke].samples / 5);
-  for (int n : *per_view) c.views += n >= needed;
-  return c;
+  for (int n : *per_view) views += n >= needed;
+  return views;
 }
 
 // The edgels of a stroke are its own: those that its samples found, and their neighbours in the
@@ -160,6 +157,15 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   result.verdicts.resize(sketch.size());
   result.stats = o.strokes;
   std::vector<bool> keep(sketch.size());
+  const std::vector<int> degree = node_degrees(sketch);
+  const double node = node_price(world, place_sigma_px(o, options.place_sigma_px));
+  // [nat] of a stroke and of the nodes that it alone ends in.
+  const auto price = [&](int i) {
+    const Stroke& s = sketch.strokes[i];
+    double sum = options.price * own_parameters(s.kind);
+    for (int n : {s.begin, s.end}) sum += n >= 0 && degree[n] == 1 ? node : 0;
+    return sum;
+  };
   for (int i : order) {
     Verdict& verdict = result.verdicts[i];
     const auto judge_by = [&](const EdgelFlags& others) {
@@ -169,14 +175,14 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     verdict = judge_extent(o.strokes[i], options);
     if (verdict != Verdict::kKept) continue;
     // Where two edges run side by side, the better one has explained its edgels already.
-    const Claim c = claim(o, i, owned, &per_view);
-    if (c.views < options.min_views || c.edgels < options.min_own * o.strokes[i].matches)
+    const double places = own_cover(o, i, options.min_views, owned) * o.strokes[i].samples;
+    if (claim(o, i, owned, &per_view) < options.min_views || kOutlierNats * places < price(i))
       verdict = Verdict::kRedundant;
     else
       judge_by(owned);
     const bool crowded = verdict == Verdict::kRedundant || verdict == Verdict::kScattered ||
                          verdict == Verdict::kMoving;
-    if (crowded && claim(o, i, explained, &per_view).views >= options.min_views &&
+    if (crowded && claim(o, i, explained, &per_view) >= options.min_views &&
         own_cover(o, i, options.min_views, explained) >= options.min_cover)
       judge_by(explained);
     if (verdict != Verdict::kKept) continue;

@@ -105,6 +105,13 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
 }
 
 // One price and one least deviation for all that is described.
+SelectOptions select_options(const ReconstructOptions& options) {
+  SelectOptions select = options.select;
+  select.price = options.segment.price;
+  select.place_sigma_px = options.rechain.sigma_px;
+  return select;
+}
+
 RegularizeOptions regularize_options(const ReconstructOptions& options) {
   RegularizeOptions regularize = options.regularize;
   regularize.price = options.segment.price;
@@ -126,8 +133,7 @@ Simplified simpler_graph(const Sketch& sketch, const EdgeWorld& world,
   topology.footprint = world.footprint;
   topology.price = options.segment.price;
   topology.sigma_px = place_sigma_px(o, options.rechain.sigma_px);
-  const double size_px = world.bounds.diagonal().norm() / world.footprint;
-  topology.node_price = 3 * std::log(std::max(1.0, size_px / topology.sigma_px));
+  topology.node_price = node_price(world, topology.sigma_px);
   return simplify(sketch, topology, points);
 }
 
@@ -158,7 +164,7 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
   Stage stage("fit", 0, report, progress);
   const Sketch first =
       polish(initial_sketch(points, world.footprint, options), world, early(options));
-  const Selection selection = select_strokes(first, world, options.select);
+  const Selection selection = select_strokes(first, world, select_options(options));
   note_verdicts(first, selection, progress);
   const Sketch& chosen = selection.sketch;
   report->counts.push_back({"strokes_lifted", double(first.size())});
@@ -181,7 +187,7 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
     const Simplified simpler = simpler_graph(moved.sketch, world, options);
     for (const auto& [name, count] : simpler.counts.named()) row.push_back({name, double(count)});
     const Round written = rewritten(grown(simpler.sketch, world, options), world, options);
-    const Selection chosen = select_strokes(written.sketch, world, options.select);
+    const Selection chosen = select_strokes(written.sketch, world, select_options(options));
     note_verdicts(written.sketch, chosen, progress);
     row.push_back({"unexplaining", double(chosen.changes)});
     round.changed = simpler.counts.total() > 0 || written.changed || chosen.changes > 0;
@@ -215,7 +221,7 @@ Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
   const Sketch more = rewritten(grown(first, rest, options), rest, options).sketch;
   Sketch both = sketch;
   append_strokes(more, &both);
-  const Selection chosen = select_strokes(both, world, options.select);
+  const Selection chosen = select_strokes(both, world, select_options(options));
   std::vector<bool> keep(both.size(), true);
   int added = 0;
   for (int i = sketch.size(); i < both.size(); ++i) {

@@ -22,7 +22,8 @@ std::vector<BenchVariant> ablation_variants() {
                                             no_regular = {"regularize", "false"},
                                             no_conics = {"conics", "false"},
                                             no_rewrite = {"rewrite", "false"},
-                                            no_closing = {"close", "false"};
+                                            no_closing = {"close", "false"},
+                                            no_second = {"second-look", "false"};
   return {
       {"lift and fit only", {no_early, no_final, no_rounds}},
       {"+ raster rounds", {no_early, no_final, no_topology, no_visibility}},
@@ -39,6 +40,7 @@ std::vector<BenchVariant> ablation_variants() {
       {"all but conics", {no_conics}},
       {"all but rewriting", {no_rewrite}},
       {"all but closing", {no_closing}},
+      {"all but the second look", {no_second}},
   };
 }
 

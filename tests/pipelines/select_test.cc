@@ -121,6 +121,21 @@ TEST(Select, AStrokeThatTooFewViewsSeeIsUncovered) {
   }
 }
 
+TEST(Select, AStrokeStaysIfWhatItAloneExplainsIsWorthItsParameters) {
+  // Most of the second lies on the first; 6 or 60 px go beyond it.
+  for (const auto& [beyond_px, kept] : {std::pair(6, false), std::pair(60, true)}) {
+    Sketch s;
+    const Vector3d end(0.6 + beyond_px * kPixel, 0.5, 0.5);
+    add_line(&s, {0.1, 0.5, 0.5}, {0.6, 0.5, 0.5});
+    add_line(&s, {0.2, 0.5, 0.5}, end);
+    const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), {{{0.1, 0.5, 0.5}, end}});
+    std::vector<Verdict> verdicts = select_strokes(s, w, {}).verdicts;
+    std::sort(verdicts.begin(), verdicts.end());
+    EXPECT_EQ(verdicts.front(), Verdict::kKept);
+    EXPECT_EQ(verdicts.back(), kept ? Verdict::kKept : Verdict::kRedundant) << beyond_px;
+  }
+}
+
 TEST(Select, ParallelEdgesFourPixelsApartAreTwo) {
   Sketch s;
   const Vector3d gap(0, 2.8 * kPixel, 2.8 * kPixel);
