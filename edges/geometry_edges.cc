@@ -18,27 +18,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kPeak = 0.3;     // gradient [per px] of a unit step that is smeared by 1.3 px
 constexpr double kSharp = 2.5;    // [px] width (one sigma) above which a turn is a round surface
-constexpr double kBand = 3.0;     // [px] about a place where its step is fitted
 constexpr double kMoves = 1.5;    // [px] a place may move by when it is measured
 constexpr double kOneEdge = 2.2;  // [px] within which two kinds of evidence are one edge
-
-double turn_of(const Side& a, const Side& b) {
-  return std::atan2(a.normal.cross(b.normal).norm(), a.normal.dot(b.normal));
-}
-
-// Step of depth from one side's plane to the other's, in footprints of the nearer one.
-double jump_of(const Side& a, const Side& b, double unit) {
-  const double far = std::min(a.inverse, b.inverse), near = std::max(a.inverse, b.inverse);
-  return unit * (near / std::max(far, 1e-3 * near) - 1);
-}
-
-// Difference of the slopes of both sides [footprints per px]: what a place that is one pixel off
-// takes for a step.
-double bend_of(const Side& a, const Side& b, double unit) {
-  return unit * std::abs(a.inverse_s - b.inverse_s) / std::max(a.inverse, b.inverse);
-}
 
 struct Thresholds {
   double jump_px = 0, crease = 0;  // [footprints], [rad]
@@ -151,9 +133,8 @@ bool measure_crease(const GeometryFields& f, const Place& p, const Thresholds& t
   const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
   if (a.samples < 4 || b.samples < 4) return false;
   // What the steady turn of either side adds over the smeared band is no crease.
-  const double turn = turn_of(a, b),
-               steady = std::max(a.normal_slope.norm(), b.normal_slope.norm());
-  if (turn < t.crease + kBand * steady) return false;
+  const double turn = turn_of(a, b);
+  if (turn < t.crease + steady_turn(a, b)) return false;
   const Vector3d d = b.normal - a.normal;
   std::vector<StepSample> samples;
   for_each_pixel(f, p, -std::min(kBand, a.extent), std::min(kBand, b.extent),
@@ -276,18 +257,6 @@ void smooth_chains(EdgelMap* map) {
     }
 }
 
-// The pixels that matter: the object and as much around it as filters and sides reach.
-cv::Rect region_of(const GeometryMaps& maps) {
-  constexpr int kMargin = 16;  // [px]
-  const int w = maps.width(), h = maps.height();
-  const cv::Mat1f alpha(h, w, const_cast<float*>(maps.alpha.data.data()));
-  const cv::Rect object = cv::boundingRect(alpha > 0);
-  if (object.empty()) return object;
-  const cv::Rect wider(object.x - kMargin, object.y - kMargin, object.width + 2 * kMargin,
-                       object.height + 2 * kMargin);
-  return wider & cv::Rect(0, 0, w, h);
-}
-
 EdgelMap edges_of(const GeometryMaps& maps, const Camera& camera, const GeometryOptions& options,
                   GeometryNoise* noise) {
   EdgelMap map;
@@ -300,9 +269,7 @@ EdgelMap edges_of(const GeometryMaps& maps, const Camera& camera, const Geometry
   gaussian_gradient(f.alpha, options.sigma_px, &ax, &ay);
   const Slopes depth = depth_slopes(f, options.sigma_px),
                normal = normal_slopes(f, options.sigma_px);
-  const double low_depth = kPeak * options.jump_px;
-  const double low_normal = kPeak * options.crease_deg * kDegree;
-  cv::magnitude(depth.magnitude / low_depth, normal.magnitude / low_normal, f.activity);
+  measure_activity(depth, normal, options.jump_px, options.crease_deg * kDegree, &f);
   const Thresholds t = measure_noise(f, options, noise);
 
   Collection found(maps.width(), maps.height());
@@ -310,7 +277,7 @@ EdgelMap edges_of(const GeometryMaps& maps, const Camera& camera, const Geometry
       find_places(slopes_of(ax, ay), 0.5 * kPeak),
       [&](const Place& p, Measured* m) { return measure_outline(f, p, m); }, &found);
   collect(
-      find_places(depth, low_depth),
+      find_places(depth, kPeak * options.jump_px),
       [&](const Place& p, Measured* m) { return measure_occlusion(f, p, t, m); }, &found);
   collect(
       find_places(normal, kPeak * t.crease),
@@ -339,15 +306,10 @@ EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
   map.chain.assign(1, 0);
   if (map.width < 3 || map.height < 3) return map;
   map.mask = Image<uint8_t>(map.width, map.height);
-  const cv::Rect box = region_of(maps);
+  const cv::Rect box = object_box(maps);
   if (box.empty()) return map;
-  const auto part = [&box](const Image<float>& image) {
-    return cut(image, box.x, box.y, box.width, box.height);
-  };
-  GeometryMaps inner{part(maps.depth), {}, part(maps.alpha)};
-  for (int c = 0; c < 3; ++c) inner.normal[c] = part(maps.normal[c]);
-  EdgelMap found =
-      edges_of(inner, camera.cut(box.x, box.y, box.width, box.height), options, noise);
+  EdgelMap found = edges_of(cut_maps(maps, box), camera.cut(box.x, box.y, box.width, box.height),
+                            options, noise);
   for (int y = 0; y < box.height; ++y)
     std::copy_n(found.mask.row(y), box.width, map.mask.row(box.y + y) + box.x);
   for (Edgel& e : found.edgels) e.x += float(box.x), e.y += float(box.y);

@@ -59,6 +59,32 @@ bool localise(const Slopes& s, const cv::Mat1f& log, int x, int y, Place* place)
 
 double focal(const Camera& camera) { return std::sqrt(camera.fx * camera.fy); }
 
+cv::Rect object_box(const GeometryMaps& maps) {
+  constexpr int kMargin = 16;  // [px]
+  const int w = maps.width(), h = maps.height();
+  const cv::Mat1f alpha(h, w, const_cast<float*>(maps.alpha.data.data()));
+  const cv::Rect object = cv::boundingRect(alpha > 0);
+  if (object.empty()) return object;
+  const cv::Rect wider(object.x - kMargin, object.y - kMargin, object.width + 2 * kMargin,
+                       object.height + 2 * kMargin);
+  return wider & cv::Rect(0, 0, w, h);
+}
+
+GeometryMaps cut_maps(const GeometryMaps& maps, const cv::Rect& box) {
+  const auto part = [&box](const Image<float>& image) {
+    return cut(image, box.x, box.y, box.width, box.height);
+  };
+  GeometryMaps out{part(maps.depth), {}, part(maps.alpha)};
+  for (int c = 0; c < 3; ++c) out.normal[c] = part(maps.normal[c]);
+  return out;
+}
+
+void measure_activity(const Slopes& depth, const Slopes& normal, double jump_px, double crease,
+                      GeometryFields* fields) {
+  cv::magnitude(depth.magnitude / (kPeak * jump_px), normal.magnitude / (kPeak * crease),
+                fields->activity);
+}
+
 GeometryFields make_fields(const GeometryMaps& maps, const Camera& camera) {
   GeometryFields f;
   f.camera = camera;

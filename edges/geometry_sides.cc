@@ -2,6 +2,7 @@
 #include "edges/geometry_sides.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -71,6 +72,23 @@ bool facing_in(const GeometryFields& f, const Place& p, double from, double to, 
 }
 
 }  // namespace
+
+double turn_of(const Side& a, const Side& b) {
+  return std::atan2(a.normal.cross(b.normal).norm(), a.normal.dot(b.normal));
+}
+
+double steady_turn(const Side& a, const Side& b) {
+  return kBand * std::max(a.normal_slope.norm(), b.normal_slope.norm());
+}
+
+double jump_of(const Side& a, const Side& b, double unit) {
+  const double far = std::min(a.inverse, b.inverse), near = std::max(a.inverse, b.inverse);
+  return unit * (near / std::max(far, 1e-3 * near) - 1);
+}
+
+double bend_of(const Side& a, const Side& b, double unit) {
+  return unit * std::abs(a.inverse_s - b.inverse_s) / std::max(a.inverse, b.inverse);
+}
 
 bool is_rim(const GeometryFields& f, const Place& p, int sign) {
   constexpr double kLongest = 10, kFirst = 1.5;  // [px]

@@ -39,11 +39,23 @@ struct Side {
   double inverse_at(double s, double t) const { return inverse + inverse_s * s + inverse_t * t; }
 };
 
+constexpr double kBand = 3.0;         // [px] about a place where its step is fitted
 constexpr double kLongestSide = 7.0;  // [px]
 constexpr double kLinear = 4.5;       // [px] of extent from which slopes can be told from noise
 
 /// Fits the side of negative (-1) or positive (+1) s.
 Side fit_side(const GeometryFields& fields, const Place& place, int sign);
+
+/// Angle between the normals [rad].
+double turn_of(const Side& a, const Side& b);
+/// What the steady turn of either side adds to it over the smeared band: a round surface [rad].
+double steady_turn(const Side& a, const Side& b);
+/// Step of depth from one side's plane to the other's, in footprints of the nearer one; `unit`: the
+/// focal length [px].
+double jump_of(const Side& a, const Side& b, double unit);
+/// Difference of the slopes of both sides [footprints per px]: what a place that is one pixel off
+/// takes for a step.
+double bend_of(const Side& a, const Side& b, double unit);
 
 /// Does a round surface turn away from the line of sight here (its contour, which moves with the
 /// view)? Towards a contour the squared cosine between normal and line of sight falls linearly to

@@ -9,6 +9,7 @@
 #include "datasets/scene.h"
 #include "edges/detect.h"
 #include "edges/detect_map.h"
+#include "edges/edge_tracks.h"
 #include "edges/geometry_edges.h"
 #include "edges/surfel_field.h"
 #include "pipelines/run_report.h"
@@ -42,6 +43,11 @@ class Detector {
   virtual bool learns() const { return false; }
   /// The geometry in which the edges of a view were found; false if there is none. Throws InputError.
   virtual bool geometry(const Scene&, const View&, GeometryMaps*) const { return false; }
+  /// What points on curves in space are by the geometry of all views: unknown wherever the detector
+  /// has none of its own. Not before prepare().
+  virtual std::vector<EdgeKind> judge(const CurvePoints& curves) const {
+    return std::vector<EdgeKind>(curves.position.cols(), EdgeKind::kUnknown);
+  }
   /// The surfels as a PLY file, see surfel_ply; empty if there are none.
   virtual std::string surfels() const { return ""; }
 };

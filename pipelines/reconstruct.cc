@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/reconstruct.h"
 
+#include <memory>
+
 #include "datasets/errors.h"
+#include "pipelines/detectors.h"
 #include "pipelines/stages.h"
 
 namespace sketchsplat {
@@ -14,9 +17,11 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
   RunReport report;
   report.warnings = scene.warnings;
 
-  const EdgeWorld world = detect_scene(scene, options, &report, progress);
+  const std::unique_ptr<Detector> detector = make_detector(options);
+  const EdgeWorld world = detect_scene(scene, detector.get(), &report, progress);
   const std::vector<EdgePoint> points = lift_scene(world, options, &report, progress);
   Sketch sketch = fit_strokes(points, world, options, &report, progress);
+  sketch = drop_print(sketch, world, *detector, &report, progress);
 
   const std::vector<EdgeTarget> targets = make_targets(world, options.optimize);
   for (int k = 0; k < options.rounds; ++k) {
@@ -25,6 +30,7 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
     if (options.simplify && !round.changed) break;
   }
   sketch = look_again(sketch, world, targets, options, &report, progress);
+  sketch = drop_print(sketch, world, *detector, &report, progress);
   sketch = finish_sketch(sketch, world, options, &report, progress);
   if (sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");

@@ -22,13 +22,14 @@ constexpr int kFewestViews = 3;
 constexpr int kSecondViews = 3;    // that agree on a point where nothing else is
 constexpr int kShortestRest = 8;   // edgels: shorter rests of chains are corners and noise
 constexpr double kLonger = 3;      // times the shortest stroke: the shortest that comes late
+constexpr double kPrintSpacing = 4;  // [px] of the points of strokes that a detector judges
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
 
 }  // namespace
 
-EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report,
                        Progress* progress) {
-  std::vector<Detection> found = detect_all(scene, make_detector(options).get(), report, progress);
+  std::vector<Detection> found = detect_all(scene, detector, report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
   size_t edgels = 0, with_edges = 0;
@@ -171,6 +172,26 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
   stage.result(std::to_string(chosen.size()) + " of " + std::to_string(first.size()) +
                " strokes stand");
   return rewritten(grown(chosen, world, options), world, options).sketch;
+}
+
+Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
+                  RunReport* report, Progress* progress) {
+  const SampleLayout layout = plan_samples(sketch, kPrintSpacing * world.footprint);
+  const Samples samples = evaluate_samples(sketch, layout);
+  const std::vector<EdgeKind> kinds =
+      detector.judge({samples.position, samples.tangent, layout.first});
+  std::vector<bool> keep(sketch.size(), true);
+  for (int i = 0; i < sketch.size(); ++i) {
+    const auto begin = kinds.begin() + layout.first[i], end = kinds.begin() + layout.first[i + 1];
+    keep[i] = std::count(begin, end, EdgeKind::kPrint) <= std::count(begin, end, EdgeKind::kShape);
+    if (keep[i] || !progress) continue;
+    const char* kind = kind_name(sketch.strokes[i].kind);
+    progress->note(std::string(kind) + " " + std::to_string(i) + " is print");
+  }
+  const Sketch out = keep_strokes(sketch, keep);
+  if (out.size() < sketch.size())
+    report->counts.push_back({"strokes_of_print", double(sketch.size() - out.size())});
+  return out;
 }
 
 Round run_round(const Sketch& sketch, const EdgeWorld& world,

@@ -12,10 +12,10 @@
 
 namespace sketchsplat {
 
-/// Finds the edgels of every view by the detector that was chosen (detectors.h). Frames that cannot
-/// be read are left out with a warning. Throws TooLittleError if fewer than three views hold edges,
-/// InputError if no image, or no map of that name, can be read.
-EdgeWorld detect_scene(const Scene& scene, const ReconstructOptions& options, RunReport* report,
+/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are left
+/// out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError if no
+/// image, or no map of that name, can be read.
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report,
                        Progress* progress);
 
 /// The space sweep over all edgels. Throws TooLittleError if no point is found.
@@ -26,6 +26,11 @@ std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptio
 /// edgels, chosen by what they explain, and as long as the views see them.
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
                    const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// The sketch without strokes of which the detector knows that most of what it knows about lies on
+/// a smooth surface: print (Detector::judge).
+Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
+                  RunReport* report, Progress* progress);
 
 /// One round: strokes are drawn and moved (optimize), weighed, and the graph is simplified.
 struct Round {

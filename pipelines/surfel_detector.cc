@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/surfel_detector.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 
 #include "datasets/errors.h"
+#include "edges/edge_tracks.h"
 #include "edges/lift.h"
 #include "edges/training_view.h"
 
@@ -14,6 +16,11 @@ namespace {
 
 constexpr double kAlongDeg = 30;  // largest turn between an edge of the picture and of the geometry
 constexpr int kFewestViews = 3;
+constexpr double kEven = 0.5;     // evenness of colours above which little can be print
+constexpr int kFewestPoints = 2;  // of a track that is judged
+constexpr int kEvery = 2;         // points of a track of which one is looked at
+constexpr int kAlong = 6;         // edgels to the next one
+constexpr double kOffPx = 3;      // [pixel footprints] from the surfels to what they have a say in
 
 // Per edgel of `a`: does one of `b` within reach run along it?
 std::vector<char> beside(const EdgelMap& a, const EdgelMap& b, double reach_px, bool along) {
@@ -35,6 +42,35 @@ class SurfelDetector : public Detector {
   explicit SurfelDetector(const DetectionOptions& options) : options_(options) {}
 
   void prepare(const Scene& scene, RunReport* report, Progress* progress) override {
+    fit_surfels(scene, report, progress);
+    look_at_surfels(report, progress);
+  }
+
+  EdgelMap detect(const Scene&, const View& view) const override {
+    for (size_t i = 0; i < world_.views.size(); ++i)
+      if (world_.views[i].image_path == view.image_path) {
+        if (options_.surfel_snap_px <= 0) return shape_[i];
+        return snap_edgels(shape_[i], world_.maps[i], kinds_[i], field_.evenness > kEven,
+                           options_.surfel_snap_px);
+      }
+    read_masked(view);  // says what is wrong with it
+    throw InputError(view.image_path, "a picture that surfels were fitted to", "another one");
+  }
+
+  bool geometry(const Scene&, const View& view, GeometryMaps* maps) const override {
+    *maps = render_geometry(field_, view, options_.surfels.mode_deg);
+    return true;
+  }
+  std::vector<EdgeKind> judge(const CurvePoints& curves) const override {
+    const std::vector<TrackSightings> sightings = track_sightings(world_, curves, 1);
+    return judge_tracks(curves, sightings, support_of(sightings), kOffPx);
+  }
+
+  bool learns() const override { return true; }
+  std::string surfels() const override { return surfel_ply(field_); }
+
+ private:
+  void fit_surfels(const Scene& scene, RunReport* report, Progress* progress) {
     Stage stage("surfels", options_.surfels.renderings, report, progress);
     const std::vector<TrainingView> views = look(scene);
     field_ =
@@ -53,29 +89,56 @@ class SurfelDetector : public Detector {
     stage.result(text);
   }
 
-  EdgelMap detect(const Scene&, const View& view) const override {
-    const Picture picture = read_masked(view);
-    GeometryMaps maps = render_geometry(field_, view, options_.surfels.mode_deg);
-    maps.alpha = picture.alpha;  // sharper than that of surfels
-    EdgelMap map = geometry_edges(maps, view.camera, options_.geometry);
-    if (options_.surfel_snap_px > 0)
-      map = snap_edgels(map, edges_of(view, picture), options_.surfel_snap_px);
-    return map;
+  // What the surfels show in every view, and what the edges of the pictures are by that.
+  void look_at_surfels(RunReport* report, Progress* progress) {
+    const int n = int(world_.views.size());
+    Stage stage("surfel edges", n, report, progress);
+    maps_.resize(n), shape_.resize(n);
+    for_each_view([&](int i) {
+      const View& view = world_.views[i];
+      GeometryMaps maps = render_geometry(field_, view, options_.surfels.mode_deg);
+      maps.alpha = std::move(alpha_[i]);  // sharper than that of surfels
+      shape_[i] = geometry_edges(maps, view.camera, options_.geometry);
+      maps_[i] = object_maps(maps, view.camera);
+      stage.step();
+    });
+    alpha_.clear();
+    const CurvePoints tracks =
+        track_points(lift_edges(world_, {}), world_.footprint, {}, kFewestPoints);
+    const std::vector<TrackSightings> sightings = track_sightings(world_, tracks, kEvery);
+    const std::vector<std::vector<EdgelSupport>> support = support_of(sightings);
+    const std::vector<EdgeKind> kinds = judge_tracks(tracks, sightings, support, kOffPx);
+    kinds_ = edgel_kinds(world_, sightings, support, kinds, kOffPx, kAlong);
+    const auto count = [&kinds](EdgeKind kind) { return std::count(kinds.begin(), kinds.end(), kind); };
+    stage.result(std::to_string(count(EdgeKind::kShape)) + " points of tracks on edges, " +
+                 std::to_string(count(EdgeKind::kPrint)) + " on print");
   }
 
-  bool geometry(const Scene&, const View& view, GeometryMaps* maps) const override {
-    *maps = render_geometry(field_, view, options_.surfels.mode_deg);
-    return true;
+  std::vector<std::vector<EdgelSupport>> support_of(
+      const std::vector<TrackSightings>& sightings) const {
+    std::vector<std::vector<EdgelSupport>> support(sightings.size());
+    for_each_view([&](int i) {
+      support[i] =
+          edgel_support(maps_[i], world_.maps[i], sightings[i].place, options_.geometry);
+    });
+    return support;
   }
-  bool learns() const override { return true; }
-  std::string surfels() const override { return surfel_ply(field_); }
 
- private:
-  // Of the picture: found when the surfels were fitted to it, if they were.
-  EdgelMap edges_of(const View& view, const Picture& picture) const {
-    for (size_t i = 0; i < world_.views.size(); ++i)
-      if (world_.views[i].image_path == view.image_path) return world_.maps[i];
-    return detect_edges(picture, options_.detect);
+  // In parallel; f(index of the view).
+  template <typename F>
+  void for_each_view(const F& f) const {
+    const int n = int(world_.views.size());
+    std::vector<std::exception_ptr> failures(n);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int i = 0; i < n; ++i) {
+      try {
+        f(i);
+      } catch (...) {
+        failures[i] = std::current_exception();  // must not leave the parallel loop
+      }
+    }
+    for (const std::exception_ptr& failure : failures)
+      if (failure) std::rethrow_exception(failure);
   }
 
   // What the edges of the pictures, printed ones too, say about where nothing is.
@@ -98,14 +161,16 @@ class SurfelDetector : public Detector {
     const int n = int(scene.views.size());
     std::vector<TrainingView> views(n);
     std::vector<EdgelMap> maps(n);
+    std::vector<Image<float>> alpha(n);
     std::vector<std::string> complaints(n);
     std::vector<std::exception_ptr> failures(n);
 #pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < n; ++i) {
       try {
-        const Picture picture = read_masked(scene.views[i]);
+        Picture picture = read_masked(scene.views[i]);
         maps[i] = detect_edges(picture, options_.detect);
         views[i] = make_training_view(scene.views[i], picture, options_.surfels.side_px);
+        alpha[i] = std::move(picture.alpha);
       } catch (const InputError& e) {
         complaints[i] = e.what();
       } catch (...) {
@@ -122,6 +187,7 @@ class SurfelDetector : public Detector {
       good.push_back(std::move(views[i]));
       good_views.push_back(scene.views[i]);
       good_maps.push_back(std::move(maps[i]));
+      alpha_.push_back(std::move(alpha[i]));
     }
     if (int(good.size()) < kFewestViews) {
       for (const std::string& complaint : complaints)
@@ -136,18 +202,29 @@ class SurfelDetector : public Detector {
 
   DetectionOptions options_;
   EdgeWorld world_;  // of the pictures
+  std::vector<Image<float>> alpha_;  // of the pictures, until maps_ have them
   SurfelField field_;
+  std::vector<ObjectMaps> maps_;              // per view: what the surfels look like
+  std::vector<EdgelMap> shape_;               // per view: edges that the surfels show
+  std::vector<std::vector<EdgeKind>> kinds_;  // per view: what the edgels of the picture are
 };
 
 }  // namespace
 
-EdgelMap snap_edgels(const EdgelMap& geometry, const EdgelMap& picture, double reach_px) {
+EdgelMap snap_edgels(const EdgelMap& geometry, const EdgelMap& picture,
+                     const std::vector<EdgeKind>& kinds, bool even, double reach_px) {
   EdgelMap out;
   out.width = picture.width, out.height = picture.height;
   out.noise = picture.noise;
   out.mask = picture.mask;
   constexpr int kMinChain = 4;  // [px] shorter pieces are chance
-  append_runs(picture, beside(picture, geometry, reach_px, true), kMinChain, &out);
+  std::vector<char> keep = beside(picture, geometry, reach_px, true);
+  for (size_t i = 0; i < kinds.size(); ++i)
+    if (kinds[i] == EdgeKind::kShape || (even && kinds[i] == EdgeKind::kUnknown))
+      keep[i] = true;
+    else if (kinds[i] == EdgeKind::kPrint && !picture.edgels[i].outline)
+      keep[i] = false;
+  append_runs(picture, keep, kMinChain, &out);
   build_lookup(&out, std::max(4.0, reach_px));
   std::vector<char> alone = beside(geometry, out, reach_px, false);
   for (char& a : alone) a = !a;

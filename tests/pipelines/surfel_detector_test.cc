@@ -135,7 +135,7 @@ EdgelMap line_at(float y, int from, int to) {
 
 TEST(SnapEdgels, PictureSaysWhereAndGeometryWhether) {
   const EdgelMap picture = line_at(50, 10, 40), geometry = line_at(51.5f, 20, 80);
-  const EdgelMap both = snap_edgels(geometry, picture, 3);
+  const EdgelMap both = snap_edgels(geometry, picture, {}, false, 3);
   int of_picture = 0, of_geometry = 0;
   for (const Edgel& e : both.edgels) {
     of_picture += e.y == 50;
@@ -144,7 +144,25 @@ TEST(SnapEdgels, PictureSaysWhereAndGeometryWhether) {
   EXPECT_NEAR(of_picture, 22, 2);  // not 10..17, where there is no geometry
   EXPECT_NEAR(of_geometry, 39, 3);
   EXPECT_EQ(of_picture + of_geometry, int(both.edgels.size()));
-  EXPECT_TRUE(snap_edgels(line_at(80, 0, 0), picture, 3).edgels.empty());
+  EXPECT_TRUE(snap_edgels(line_at(80, 0, 0), picture, {}, false, 3).edgels.empty());
+}
+
+TEST(SnapEdgels, WhatTracksTellCountsMore) {
+  const EdgelMap picture = line_at(50, 10, 80), geometry = line_at(51.5f, 20, 80);
+  std::vector<EdgeKind> kinds(70, EdgeKind::kUnknown);
+  std::fill(kinds.begin(), kinds.begin() + 6, EdgeKind::kShape);        // 10..15
+  std::fill(kinds.begin() + 30, kinds.begin() + 50, EdgeKind::kPrint);  // 40..59
+  for (const bool even : {false, true}) {
+    int known = 0, unknown = 0, print = 0;
+    for (const Edgel& e : snap_edgels(geometry, picture, kinds, even, 3).edgels) {
+      known += e.y == 50 && e.x < 16;
+      unknown += e.y == 50 && e.x >= 16 && e.x < 17;  // no geometry within three pixels
+      print += e.y == 50 && e.x >= 40 && e.x < 60;
+    }
+    EXPECT_EQ(known, 6);
+    EXPECT_EQ(unknown, even);
+    EXPECT_EQ(print, 0);
+  }
 }
 
 }  // namespace
