@@ -7,9 +7,9 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kFewestViews = 3;  // that tell what a point is
-constexpr int kBeside = 2;     // measured points to either side that have a say
-constexpr double kSome = 0.75;  // of the views say no more than print may
-constexpr double kSure = 0.5;   // that there is an edge: at the thresholds
+constexpr int kBeside = 2;       // measured points to either side that have a say
+constexpr double kSome = 0.75;   // of the views say no more than print may
+constexpr double kSure = 0.5;    // that there is an edge: at the thresholds
 
 double quantile(double share, std::vector<float>* values) {
   const size_t k = std::min(values->size() - 1, size_t(share * double(values->size())));
@@ -107,19 +107,18 @@ std::vector<EdgeKind> judge_tracks(const CurvePoints& tracks,
                                                              : EdgeKind::kPrint;
       // And the points that were not measured, up to half-way to the next that was.
       const int begin = k == 0 ? tracks.first[c] : (told[k - 1] + told[k]) / 2 + 1;
-      const int end = k + 1 == int(told.size()) ? tracks.first[c + 1]
-                                                : (told[k] + told[k + 1]) / 2 + 1;
+      const int end =
+          k + 1 == int(told.size()) ? tracks.first[c + 1] : (told[k] + told[k + 1]) / 2 + 1;
       std::fill(kinds.begin() + begin, kinds.begin() + end, kind);
     }
   }
   return kinds;
 }
 
-std::vector<std::vector<EdgeKind>> edgel_kinds(const EdgeWorld& world,
-                                               const std::vector<TrackSightings>& sightings,
-                                               const std::vector<std::vector<EdgelSupport>>& support,
-                                               const std::vector<EdgeKind>& kinds, double reach_px,
-                                               int along) {
+std::vector<std::vector<EdgeKind>> edgel_kinds(
+    const EdgeWorld& world, const std::vector<TrackSightings>& sightings,
+    const std::vector<std::vector<EdgelSupport>>& support, const std::vector<EdgeKind>& kinds,
+    double reach_px, int along) {
   std::vector<std::vector<EdgeKind>> out;
   for (size_t v = 0; v < world.maps.size(); ++v) {
     const EdgelMap& map = world.maps[v];

@@ -32,12 +32,12 @@ struct TrackSightings {
 std::vector<TrackSightings> track_sightings(const EdgeWorld& world, const CurvePoints& tracks,
                                             int every);
 
-/// Every point is what the views that see it, and its neighbours along the track, say: on an edge of
-/// the shape if half of the views have one there, print if three quarters have none (quantiles: a
-/// view in which another surface is near, or a hole in the surfels, does not count). A view in which
-/// the point lies farther off the geometry than `reach_px` [pixel footprints] has no say: something
-/// hides it, or the geometry is wrong. Unknown if none has. `support`: per view, as long as the
-/// sightings.
+/// Every point is what the views that see it, and its neighbours along the track, say: on an edge
+/// of the shape if half of the views have one there, print if three quarters have none (quantiles:
+/// a view in which another surface is near, or a hole in the surfels, does not count). A view in
+/// which the point lies farther off the geometry than `reach_px` [pixel footprints] has no say:
+/// something hides it, or the geometry is wrong. Unknown if none has. `support`: per view, as long
+/// as the sightings.
 std::vector<EdgeKind> judge_tracks(const CurvePoints& tracks,
                                    const std::vector<TrackSightings>& sightings,
                                    const std::vector<std::vector<EdgelSupport>>& support,
@@ -45,10 +45,9 @@ std::vector<EdgeKind> judge_tracks(const CurvePoints& tracks,
 
 /// Of every view and edgel: what the nearest sighting along its chain is of, up to `along` edgels
 /// away, among those that lie on the geometry as above.
-std::vector<std::vector<EdgeKind>> edgel_kinds(const EdgeWorld& world,
-                                               const std::vector<TrackSightings>& sightings,
-                                               const std::vector<std::vector<EdgelSupport>>& support,
-                                               const std::vector<EdgeKind>& kinds, double reach_px,
-                                               int along);
+std::vector<std::vector<EdgeKind>> edgel_kinds(
+    const EdgeWorld& world, const std::vector<TrackSightings>& sightings,
+    const std::vector<std::vector<EdgelSupport>>& support, const std::vector<EdgeKind>& kinds,
+    double reach_px, int along);
 
 }  // namespace sketchsplat

@@ -109,7 +109,9 @@ class SurfelDetector : public Detector {
     const std::vector<std::vector<EdgelSupport>> support = support_of(sightings);
     const std::vector<EdgeKind> kinds = judge_tracks(tracks, sightings, support, kOffPx);
     kinds_ = edgel_kinds(world_, sightings, support, kinds, kOffPx, kAlong);
-    const auto count = [&kinds](EdgeKind kind) { return std::count(kinds.begin(), kinds.end(), kind); };
+    const auto count = [&kinds](EdgeKind kind) {
+      return std::count(kinds.begin(), kinds.end(), kind);
+    };
     stage.result(std::to_string(count(EdgeKind::kShape)) + " points of tracks on edges, " +
                  std::to_string(count(EdgeKind::kPrint)) + " on print");
   }
@@ -118,8 +120,7 @@ class SurfelDetector : public Detector {
       const std::vector<TrackSightings>& sightings) const {
     std::vector<std::vector<EdgelSupport>> support(sightings.size());
     for_each_view([&](int i) {
-      support[i] =
-          edgel_support(maps_[i], world_.maps[i], sightings[i].place, options_.geometry);
+      support[i] = edgel_support(maps_[i], world_.maps[i], sightings[i].place, options_.geometry);
     });
     return support;
   }
@@ -201,7 +202,7 @@ class SurfelDetector : public Detector {
   }
 
   DetectionOptions options_;
-  EdgeWorld world_;  // of the pictures
+  EdgeWorld world_;                  // of the pictures
   std::vector<Image<float>> alpha_;  // of the pictures, until maps_ have them
   SurfelField field_;
   std::vector<ObjectMaps> maps_;              // per view: what the surfels look like

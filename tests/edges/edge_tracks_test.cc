@@ -110,9 +110,9 @@ struct Seen {
     world = make_edge_world(views, maps);
     sightings = track_sightings(world, track, 2);
     for (size_t v = 0; v < views.size(); ++v)
-      support.push_back(edgel_support(
-          object_maps(maps_of(views[v], shape, noise_deg, int(v)), views[v].camera), maps[v],
-          sightings[v].place, {}));
+      support.push_back(
+          edgel_support(object_maps(maps_of(views[v], shape, noise_deg, int(v)), views[v].camera),
+                        maps[v], sightings[v].place, {}));
   }
 
   static EdgelMap picture(const View& view, const std::function<Vector3d(double)>& curve,

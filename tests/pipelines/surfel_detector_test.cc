@@ -102,16 +102,21 @@ TEST(SurfelDetector, FindsTheShapeOfPlainFaces) {
 TEST(SurfelDetector, GivesTheSameBytesForAnyNumberOfThreads) {
   const Rendered part(Style::kTextured, 8, 120);
   std::string bytes[2];
+  std::vector<float> edges[2];
   const int before = omp_get_max_threads();
   for (const int threads : {1, 2}) {
     omp_set_num_threads(threads);
     const std::unique_ptr<Detector> detector = make_detector(small_options(40));
-    detector->prepare(part.scene, nullptr, nullptr);
+    for (const Detection& d : detect_all(part.scene, detector.get(), nullptr, nullptr))
+      for (const Edgel& e : d.map.edgels)
+        edges[threads / 2].insert(edges[threads / 2].end(), {e.x, e.y, e.nx, e.ny});
     bytes[threads / 2] = detector->surfels();
   }
   omp_set_num_threads(before);
   EXPECT_FALSE(bytes[0].empty());
   EXPECT_TRUE(bytes[0] == bytes[1]);
+  EXPECT_FALSE(edges[0].empty());
+  EXPECT_TRUE(edges[0] == edges[1]);
 }
 
 TEST(SurfelDetector, SaysWhatIsMissing) {
