@@ -189,8 +189,14 @@ Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& 
     progress->note(std::string(kind) + " " + std::to_string(i) + " is print");
   }
   const Sketch out = keep_strokes(sketch, keep);
-  if (out.size() < sketch.size())
-    report->counts.push_back({"strokes_of_print", double(sketch.size() - out.size())});
+  const double dropped = sketch.size() - out.size();
+  Numbers& counts = report->counts;
+  const auto at = std::find_if(counts.begin(), counts.end(),
+                               [](const auto& count) { return count.first == "strokes_of_print"; });
+  if (at != counts.end())
+    at->second += dropped;
+  else if (dropped > 0)
+    counts.push_back({"strokes_of_print", dropped});
   return out;
 }
 

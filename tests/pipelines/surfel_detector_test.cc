@@ -10,7 +10,9 @@
 #include "datasets/geometry_maps.h"
 #include "eval/edge_maps.h"
 #include "eval/map_errors.h"
+#include "pipelines/stages.h"
 #include "tests/pipelines/rendered_part.h"
+#include "tests/support/strokes.h"
 
 namespace sketchsplat {
 namespace {
@@ -168,6 +170,40 @@ TEST(SnapEdgels, WhatTracksTellCountsMore) {
     EXPECT_EQ(unknown, even);
     EXPECT_EQ(print, 0);
   }
+}
+
+// Knows that there is print beyond x = 0.3 and edges up to 0.1, and nothing of what is between.
+class Knowing : public Detector {
+ public:
+  EdgelMap detect(const Scene&, const View&) const override { return {}; }
+  std::vector<EdgeKind> judge(const CurvePoints& curves) const override {
+    std::vector<EdgeKind> kinds;
+    for (int i = 0; i < curves.position.cols(); ++i) {
+      const double x = curves.position(0, i);
+      kinds.push_back(x > 0.3   ? EdgeKind::kPrint
+                      : x < 0.1 ? EdgeKind::kShape
+                                : EdgeKind::kUnknown);
+    }
+    return kinds;
+  }
+};
+
+TEST(DropPrint, StrokesGoOfWhichMostThatIsKnownIsPrint) {
+  Sketch sketch;
+  const int edge = test::add_line(&sketch, {0, 0, 0}, {0.35, 0, 0});
+  test::add_line(&sketch, {0.05, 1, 0}, {1, 1, 0});
+  const int unknown = test::add_line(&sketch, {0.15, 2, 0}, {0.25, 2, 0});
+  EdgeWorld world;
+  world.footprint = 0.01;
+  RunReport report;
+  const Sketch left = drop_print(sketch, world, Knowing(), &report, nullptr);
+  ASSERT_EQ(left.size(), 2);
+  EXPECT_NEAR(test::point_at(left, 0, 0.5).y(), test::point_at(sketch, edge, 0.5).y(), 1e-9);
+  EXPECT_NEAR(test::point_at(left, 1, 0.5).y(), test::point_at(sketch, unknown, 0.5).y(), 1e-9);
+  ASSERT_EQ(report.counts.size(), 1u);
+  EXPECT_EQ(report.counts[0].second, 1);
+  EXPECT_EQ(drop_print(left, world, Knowing(), &report, nullptr).size(), 2);
+  EXPECT_EQ(drop_print({}, world, Knowing(), &report, nullptr).size(), 0);
 }
 
 }  // namespace
