@@ -128,6 +128,8 @@ void list_geometry(GeometryOptions* o, Fields* f) {
   f->add("geometry-jump", &o->jump_px, "pixel footprints", 0.1, 1000,
          "Step of depth between the planes of two sides that is an edge");
   f->add("geometry-crease", &o->crease_deg, "deg", 1, 170, "Turn of the normal that is an edge");
+  f->add("geometry-shallow", &o->shallow_deg, "deg", 0, 170,
+         "The same between sides that are even over twice the width; 0: not looked for");
   f->add("geometry-noise", &o->noise, "times the noise", 0, 100, "And what either must exceed");
   f->add("geometry-rims", &o->rims, "Keep the contours of round surfaces");
   f->add("geometry-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
