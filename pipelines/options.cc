@@ -210,6 +210,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("joint-sigma", &o->rechain.sigma_px, "px", 0.01, 10,
          "Least standard deviation of what all views say of a place");
   list_select(&o->select, f);
+  f->add("surfel-bias", &o->surfel_bias_px, "px", 0, 100,
+         "At least --max-bias of edges that surfels tell of (--detector 2dgs-sn)");
   list_extent(&o->extent, f);
   list_optimize(&o->optimize, f);
   list_topology(&o->topology, f);

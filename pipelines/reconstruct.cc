@@ -1,16 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/reconstruct.h"
 
+#include <algorithm>
+
 #include "datasets/errors.h"
 #include "pipelines/stages.h"
 
 namespace sketchsplat {
 
+namespace {
+
+// Surfels say less exactly than pictures where an edge is, and their detector has left out the
+// contours of round surfaces: a stroke may stand off further in single views.
+ReconstructOptions suited_to_detector(ReconstructOptions options) {
+  if (options.detector == "2dgs-sn")
+    options.select.max_bias_px = std::max(options.select.max_bias_px, options.surfel_bias_px);
+  return options;
+}
+
+}  // namespace
+
 // The method. Images become edgels, edgels points in space, points strokes; then rounds of drawing
 // the strokes into the views, moving them and simplifying the graph, until nothing changes; and the
 // same once more with what is found in the edgels that are left.
-Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
+Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& asked,
                            Progress* progress) {
+  const ReconstructOptions options = suited_to_detector(asked);
   RunReport report;
   report.warnings = scene.warnings;
 
