@@ -21,6 +21,8 @@ constexpr double kDegree = M_PI / 180;
 constexpr double kSharp = 2.5;    // [px] width (one sigma) above which a turn is a round surface
 constexpr double kMoves = 1.5;    // [px] a place may move by when it is measured
 constexpr double kOneEdge = 2.2;  // [px] within which two kinds of evidence are one edge
+constexpr double kFar = 2;        // scale of the sides of shallow creases
+constexpr double kShallow = 40 * kDegree;  // turn above which a narrow look is better
 
 struct Thresholds {
   double jump_px = 0, crease = 0;  // [footprints], [rad]
@@ -34,8 +36,8 @@ double median(std::vector<double>* v) {
   return *middle;
 }
 
-// Steps and turns where there is none to speak of.
-Thresholds measure_noise(const GeometryFields& f, const GeometryOptions& options,
+// Steps and turns where there is none to speak of. `crease_deg`: the least turn that is an edge.
+Thresholds measure_noise(const GeometryFields& f, double crease_deg, const GeometryOptions& options,
                          GeometryNoise* noise) {
   constexpr int kStride = 6;
   constexpr double kDirections[4][2] = {
@@ -49,7 +51,7 @@ Thresholds measure_noise(const GeometryFields& f, const GeometryOptions& options
       const auto& d = kDirections[turn++ % 4];
       const Place p{double(x), double(y), d[0], d[1]};
       const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
-      if (a.extent < kLongestSide || b.extent < kLongestSide) continue;
+      if (std::min(a.extent, b.extent) < kLongestSide * f.scale) continue;
       jumps.push_back(jump_of(a, b, unit));
       turns.push_back(turn_of(a, b));
       residuals.push_back(unit * a.residual / a.inverse);
@@ -60,7 +62,7 @@ Thresholds measure_noise(const GeometryFields& f, const GeometryOptions& options
   if (noise) *noise = measured;
   Thresholds t;
   t.jump_px = std::max(options.jump_px, options.noise * measured.jump_px);
-  t.crease = kDegree * std::max(options.crease_deg, options.noise * measured.crease_deg);
+  t.crease = kDegree * std::max(crease_deg, options.noise * measured.crease_deg);
   t.depth_noise = median(&residuals);
   return t;
 }
@@ -119,36 +121,47 @@ bool measure_occlusion(const GeometryFields& f, Place p, const Thresholds& t, Me
 }
 
 // Where the planes of both sides meet, if that is better known than the turn of the normal.
-void meet_planes(const Side& a, const Side& b, const Thresholds& t, double unit, Step* step) {
+void meet_planes(const Side& a, const Side& b, const Thresholds& t, double unit, double scale,
+                 Step* step) {
   const double bend = b.inverse_s - a.inverse_s, slope = bend_of(a, b, unit);
-  if (a.extent < 4.5 || b.extent < 4.5 || slope < 0.1) return;
+  if (std::min(a.extent, b.extent) < kLinear * scale || slope < 0.1 / scale) return;
   const double s = (a.inverse - b.inverse) / bend;
   const double error = std::max(0.05, t.depth_noise) / slope;  // of extrapolating two planes
-  if (std::abs(s - step->s) > 1.0) return;
-  const double wa = 1 / (error * error), wb = 1 / std::max(0.01, step->error * step->error);
+  if (std::abs(s - step->s) > scale) return;
+  // What smears a step also shifts it, whatever the scatter about it.
+  const double shift = std::max({0.1, step->error, scale > 1 ? step->sigma / 4 : 0});
+  const double wa = 1 / (error * error), wb = 1 / (shift * shift);
   step->s = (s * wa + step->s * wb) / (wa + wb);
 }
 
 bool measure_crease(const GeometryFields& f, const Place& p, const Thresholds& t, Measured* out) {
   const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
   if (a.samples < 4 || b.samples < 4) return false;
+  const double band = kBand * f.scale;
   // What the steady turn of either side adds over the smeared band is no crease.
   const double turn = turn_of(a, b);
-  if (turn < t.crease + steady_turn(a, b)) return false;
+  if (turn < t.crease + f.scale * steady_turn(a, b)) return false;
   const Vector3d d = b.normal - a.normal;
   std::vector<StepSample> samples;
-  for_each_pixel(f, p, -std::min(kBand, a.extent), std::min(kBand, b.extent),
+  for_each_pixel(f, p, -std::min(band, a.extent), std::min(band, b.extent),
                  [&](double s, double, const cv::Point& at) {
                    const Vector3d n(f.normal[0](at), f.normal[1](at), f.normal[2](at));
                    const double u = (n - a.normal).dot(d) / d.squaredNorm();
                    samples.push_back({s, std::clamp(u, -0.3, 1.3)});
                  });
   Step step = fit_step(samples);
-  if (!step.ok || step.sigma > kSharp) return false;
-  meet_planes(a, b, t, focal(f.camera), &step);
-  if (std::abs(step.s) > kMoves) return false;
+  if (!step.ok || step.sigma > kSharp * f.scale) return false;
+  meet_planes(a, b, t, focal(f.camera), f.scale, &step);
+  if (std::abs(step.s) > kMoves * f.scale) return false;
   out->edgel = edgel_at(p, step.s, step.sigma, turn, t.crease);
   return true;
+}
+
+// Where both sides are even far enough to tell a turn that a narrower look cannot.
+bool measure_shallow(const GeometryFields& f, const Place& p, const Thresholds& t, Measured* out) {
+  const Side a = fit_side(f, p, -1), b = fit_side(f, p, +1);
+  return std::min(a.extent, b.extent) >= kLinear * f.scale && turn_of(a, b) < kShallow &&
+         measure_crease(f, p, t, out);
 }
 
 // ---------------------------------------------------------------------------------- collection
@@ -159,14 +172,13 @@ class Collection {
   Collection(int width, int height) { c_.at = Image<int>(width, height, -1); }
 
   // Is this edge known already?
-  bool covers(const Place& p) const {
-    const int cx = int(std::lround(p.x)), cy = int(std::lround(p.y)), r = int(kOneEdge) + 1;
+  bool covers(const Place& p, double reach = kOneEdge) const {
+    const int cx = int(std::lround(p.x)), cy = int(std::lround(p.y)), r = int(reach) + 1;
     for (int y = std::max(0, cy - r); y <= std::min(c_.at.height - 1, cy + r); ++y)
       for (int x = std::max(0, cx - r); x <= std::min(c_.at.width - 1, cx + r); ++x) {
         if (c_.at.at(x, y) < 0) continue;
         const Edgel& e = c_.edgels[c_.at.at(x, y)];
-        if (std::hypot(e.x - p.x, e.y - p.y) < kOneEdge &&
-            std::abs(e.nx * p.nx + e.ny * p.ny) > 0.7)
+        if (std::hypot(e.x - p.x, e.y - p.y) < reach && std::abs(e.nx * p.nx + e.ny * p.ny) > 0.7)
           return true;
       }
     return false;
@@ -180,6 +192,10 @@ class Collection {
     at = int(c_.edgels.size());
     c_.edgels.push_back(m.edgel);
     rim_.push_back(m.rim);
+  }
+
+  void add(const Collection& other) {
+    for (size_t i = 0; i < other.rim_.size(); ++i) add({other.c_.edgels[i], other.rim_[i]});
   }
 
   const Candidates& candidates() const { return c_; }
@@ -199,6 +215,26 @@ void collect(const std::vector<Place>& places, const Measure& measure, Collectio
     if (!collection->covers(place) && measure(place, &m)) found.push_back(m);
   }
   for (const Measured& m : found) collection->add(m);
+}
+
+// Creases that are too shallow to be told from noise at once, or smeared, but look sharp from
+// farther away. Not where an edge is `known`.
+Collection shallow_creases(const GeometryFields& fields, const Slopes& depth,
+                           const GeometryOptions& options, const Collection& known) {
+  GeometryFields f = fields;
+  f.scale = kFar;
+  const Slopes normal = normal_slopes(f, kFar * options.sigma_px);
+  const double low = kPeak / kFar * options.shallow_deg * kDegree;
+  cv::magnitude(depth.magnitude / (kPeak * options.jump_px), normal.magnitude / low, f.activity);
+  const Thresholds t = measure_noise(f, options.shallow_deg, options, nullptr);
+  Collection found(f.valid.cols, f.valid.rows);
+  collect(
+      find_places(normal, kPeak / kFar * t.crease),
+      [&](const Place& p, Measured* m) {
+        return !known.covers(p, kFar * kOneEdge) && measure_shallow(f, p, t, m);
+      },
+      &found);
+  return found;
 }
 
 // Cuts the rims out of the chains; of neighbours the majority decides.
@@ -270,7 +306,7 @@ EdgelMap edges_of(const GeometryMaps& maps, const Camera& camera, const Geometry
   const Slopes depth = depth_slopes(f, options.sigma_px),
                normal = normal_slopes(f, options.sigma_px);
   measure_activity(depth, normal, options.jump_px, options.crease_deg * kDegree, &f);
-  const Thresholds t = measure_noise(f, options, noise);
+  const Thresholds t = measure_noise(f, options.crease_deg, options, noise);
 
   Collection found(maps.width(), maps.height());
   collect(
@@ -279,9 +315,15 @@ EdgelMap edges_of(const GeometryMaps& maps, const Camera& camera, const Geometry
   collect(
       find_places(depth, kPeak * options.jump_px),
       [&](const Place& p, Measured* m) { return measure_occlusion(f, p, t, m); }, &found);
+  Collection shallow(maps.width(), maps.height());
+  if (options.shallow_deg > 0) shallow = shallow_creases(f, depth, options, found);
   collect(
       find_places(normal, kPeak * t.crease),
-      [&](const Place& p, Measured* m) { return measure_crease(f, p, t, m); }, &found);
+      [&](const Place& p, Measured* m) {
+        return !shallow.covers(p, kFar * kOneEdge) && measure_crease(f, p, t, m);
+      },
+      &found);
+  found.add(shallow);
 
   Candidates candidates = found.candidates();
   std::vector<bool> rim;

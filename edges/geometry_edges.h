@@ -11,7 +11,8 @@ struct GeometryOptions {
   double sigma_px = 1.0;     ///< [px] smoothing of the gradients that propose edges
   double jump_px = 3.0;      ///< [pixel footprints] depth jump that is an edge
   double crease_deg = 12.0;  ///< [deg] turn of the normal that is an edge
-  double noise = 4.0;        ///< both also exceed this many standard deviations of their noise
+  double shallow_deg = 6.0;  ///< [deg] the same where sides are even over twice the width; 0: none
+  double noise = 4.0;        ///< all also exceed this many standard deviations of their noise
   bool rims = false;         ///< keep the contours of round surfaces, which are no edges
   int min_chain = 6;         ///< [px] shorter chains are dropped
   double reach_px = 4.0;     ///< [px] of the look-up

@@ -106,9 +106,9 @@ bool is_rim(const GeometryFields& f, const Place& p, int sign) {
 
 Side fit_side(const GeometryFields& f, const Place& p, int sign) {
   Side side;
-  side.extent = extent_of(f, p, sign, kLongestSide, kRise);
+  side.extent = extent_of(f, p, sign, kLongestSide * f.scale, kRise);
   if (side.extent < 1) return side;
-  const double from = std::min(kSmeared, 0.5 * side.extent);
+  const double from = std::min(kSmeared * f.scale, 0.5 * side.extent);
   const double lo = sign > 0 ? from : -side.extent, hi = sign > 0 ? side.extent : -from;
   Matrix3d A = Matrix3d::Zero();
   Eigen::Matrix<double, 3, 4> B = Eigen::Matrix<double, 3, 4>::Zero();
@@ -123,7 +123,7 @@ Side fit_side(const GeometryFields& f, const Place& p, int sign) {
   });
   if (side.samples < 4) return side;
   const Eigen::RowVector4d mean = B.row(0) / side.samples;
-  if (side.extent >= kLinear && side.samples >= 8) {
+  if (side.extent >= kLinear * f.scale && side.samples >= 8) {
     const Eigen::Matrix<double, 3, 4> fit = A.ldlt().solve(B);
     side.normal = fit.block<1, 3>(0, 0).transpose();
     side.normal_slope = fit.block<1, 3>(1, 0).transpose();

@@ -22,6 +22,7 @@ struct GeometryFields {
   cv::Mat1f normal[3];
   cv::Mat1f alpha;
   cv::Mat1f activity;  ///< how much changes, 1 at the weakest edge: sides end where it rises again
+  double scale = 1;    ///< sides begin so much farther away, and are so much longer and broader
 };
 
 /// A place and the direction across the edge that may be there.
@@ -39,9 +40,9 @@ struct Side {
   double inverse_at(double s, double t) const { return inverse + inverse_s * s + inverse_t * t; }
 };
 
-constexpr double kBand = 3.0;         // [px] about a place where its step is fitted
-constexpr double kLongestSide = 7.0;  // [px]
-constexpr double kLinear = 4.5;       // [px] of extent from which slopes can be told from noise
+constexpr double kBand = 3.0;         // [px] at scale 1, about a place where its step is fitted
+constexpr double kLongestSide = 7.0;  // [px] at scale 1
+constexpr double kLinear = 4.5;       // [px] at scale 1, from which slopes can be told from noise
 
 /// Fits the side of negative (-1) or positive (+1) s.
 Side fit_side(const GeometryFields& fields, const Place& place, int sign);
@@ -73,13 +74,13 @@ struct Step {
 };
 Step fit_step(const std::vector<StepSample>& samples);
 
-/// Calls f(s, t, pixel) for the pixels with s in [from, to] and |t| <= 2.5, on the object only or
-/// `anywhere`.
+/// Calls f(s, t, pixel) for the pixels with s in [from, to] and |t| <= 2.5 scales, on the object
+/// only or `anywhere`.
 template <typename F>
 void for_each_pixel(const GeometryFields& fields, const Place& p, double from, double to,
                     const F& f, bool anywhere = false) {
-  constexpr double kHalf = 2.5;
-  const double reach = std::hypot(std::max(std::abs(from), std::abs(to)), kHalf);
+  const double half = 2.5 * fields.scale;
+  const double reach = std::hypot(std::max(std::abs(from), std::abs(to)), half);
   const int x0 = std::max(0, int(std::ceil(p.x - reach)));
   const int y0 = std::max(0, int(std::ceil(p.y - reach)));
   const int x1 = std::min(fields.valid.cols - 1, int(std::floor(p.x + reach)));
@@ -88,7 +89,7 @@ void for_each_pixel(const GeometryFields& fields, const Place& p, double from, d
     for (int x = x0; x <= x1; ++x) {
       const double s = (x - p.x) * p.nx + (y - p.y) * p.ny;
       const double t = (y - p.y) * p.nx - (x - p.x) * p.ny;
-      if (s < from || s > to || std::abs(t) > kHalf || !(anywhere || fields.valid(y, x))) continue;
+      if (s < from || s > to || std::abs(t) > half || !(anywhere || fields.valid(y, x))) continue;
       f(s, t, cv::Point(x, y));
     }
 }

@@ -104,9 +104,11 @@ void list_camera_fields(SynthesizeOptions* o, Fields* f) {
 void list_picture_fields(SynthesizeOptions* o, Fields* f) {
   RenderOptions& r = o->render;
   f->group("Pictures");
-  f->choose("style", &r.style, {"plain", "textured", "dark", "glossy", "shadowed"},
+  f->choose("style", &r.style, {"plain", "textured", "speckled", "dark", "glossy", "shadowed"},
             "Surface and light of the object");
-  f->add("texture-strength", &r.texture_strength, "", 0, 1, "Contrast of what textured prints");
+  f->add("texture-strength", &r.texture_strength, "", 0, 1, "Contrast of what textured and speckled print");
+  f->add("even-light", &r.even_light, "share", 0, 1,
+         "Of the light comes evenly from all sides, as in a light tent: faces get one shade");
   f->add("noise", &r.noise, "grey levels", 0, 100, "Standard deviation of the noise");
   f->add("blur", &r.blur, "px", 0, 20, "Standard deviation of the blur");
   f->add("exposure", &r.exposure, "stops", 0, 2, "Standard deviation of the exposure");

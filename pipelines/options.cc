@@ -128,6 +128,8 @@ void list_geometry(GeometryOptions* o, Fields* f) {
   f->add("geometry-jump", &o->jump_px, "pixel footprints", 0.1, 1000,
          "Step of depth between the planes of two sides that is an edge");
   f->add("geometry-crease", &o->crease_deg, "deg", 1, 170, "Turn of the normal that is an edge");
+  f->add("geometry-shallow", &o->shallow_deg, "deg", 0, 170,
+         "The same between sides that are even over twice the width; 0: not looked for");
   f->add("geometry-noise", &o->noise, "times the noise", 0, 100, "And what either must exceed");
   f->add("geometry-rims", &o->rims, "Keep the contours of round surfaces");
   f->add("geometry-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
@@ -208,6 +210,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("joint-sigma", &o->rechain.sigma_px, "px", 0.01, 10,
          "Least standard deviation of what all views say of a place");
   list_select(&o->select, f);
+  f->add("surfel-bias", &o->surfel_bias_px, "px", 0, 100,
+         "At least --max-bias of edges that surfels tell of (--detector 2dgs-sn)");
   list_extent(&o->extent, f);
   list_optimize(&o->optimize, f);
   list_topology(&o->topology, f);

@@ -54,6 +54,8 @@ struct ReconstructOptions : DetectionOptions {
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
   bool second_look = true;   ///< at the edgels that no stroke explains
   bool final_polish = true;  ///< end on the edgels themselves
+  /// [px] offset from view to view of edges that surfels alone tell of, if above select.max_bias_px
+  double surfel_bias_px = 0.4;
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
 };
 

@@ -19,11 +19,11 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kFewestViews = 3;
-constexpr int kSecondViews = 3;    // that agree on a point where nothing else is
-constexpr int kShortestRest = 8;   // edgels: shorter rests of chains are corners and noise
-constexpr double kLonger = 3;      // times the shortest stroke: the shortest that comes late
+constexpr int kSecondViews = 3;      // that agree on a point where nothing else is
+constexpr int kShortestRest = 8;     // edgels: shorter rests of chains are corners and noise
+constexpr double kLonger = 3;        // times the shortest stroke: the shortest that comes late
 constexpr double kPrintSpacing = 4;  // [px] of the points of strokes that a detector judges
-constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
+constexpr double kSmoother = 0.1;    // standard deviation of smooth joints at last
 
 }  // namespace
 
@@ -110,6 +110,10 @@ SelectOptions select_options(const ReconstructOptions& options) {
   SelectOptions select = options.select;
   select.price = options.segment.price;
   select.place_sigma_px = options.rechain.sigma_px;
+  // Surfels say less exactly than pictures where an edge is, and their detector has left out the
+  // contours of round surfaces: a stroke may stand off further in single views.
+  if (options.detector == "2dgs-sn")
+    select.max_bias_px = std::max(select.max_bias_px, options.surfel_bias_px);
   return select;
 }
 

@@ -109,6 +109,16 @@ TopoDS_Shape ridge_block(const Dimensions& d) {
                Vector3d(length, 0, 0));
 }
 
+// A row of such roofs.
+TopoDS_Shape pleat_block(const Dimensions& d) {
+  const double length = d["length"], w = d["width"] * length, h = d["height"] * length;
+  const int pleats = int(d["pleats"]);
+  const double half = w / (2 * pleats), rise = half * std::tan(d["crease"] * M_PI / 360);
+  std::vector<Vector3d> profile = {{0, 0, 0}, {0, w, 0}};
+  for (int k = 2 * pleats; k >= 0; --k) profile.push_back({0, k * half, h + (k % 2) * rise});
+  return prism(profile, Vector3d(length, 0, 0));
+}
+
 TopoDS_Shape oblique_hole(const Dimensions& d) {
   const Vector3d size = size_of(d);
   const double a = d["tilt"] * M_PI / 180;
@@ -149,6 +159,7 @@ const std::vector<PartMaker>& prismatic_parts() {
       {"fillet-block", fillet_block},
       {"fillet-step", fillet_step},
       {"ridge-block", ridge_block},
+      {"pleat-block", pleat_block},
       {"oblique-hole", oblique_hole},
       {"corner-block", corner_block},
   };

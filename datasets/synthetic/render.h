@@ -10,7 +10,8 @@ namespace sketchsplat {
 
 struct RenderOptions {
   Style style = Style::kPlain;
-  double texture_strength = 1;  ///< contrast of the patterns of Style::kTextured, [0, 1]
+  double texture_strength = 1;  ///< contrast of what Style::kTextured and kSpeckled print, [0, 1]
+  double even_light = 0;  ///< share of the light that comes evenly from all sides, see Look, [0, 1]
   bool clutter = false;         ///< things far behind the object; the picture is opaque then
   double noise = 0;  ///< standard deviation of the noise [grey levels], [0, 100]; where alpha > 0
   double blur = 0;   ///< Gaussian blur [px], [0, 20]

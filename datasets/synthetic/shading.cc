@@ -24,6 +24,7 @@ const Lamp kLamps[] = {{{2.6f, -2.2f, 3.6f}, 0.67f},
                        {{-0.7f, 0.9f, -3.6f}, 0.26f},
                        {{3.3f, 1.4f, -1.9f}, 0.18f}};
 constexpr float kSky = 0.14f, kGround = 0.06f, kAlbedo = 0.88f;
+constexpr float kEven = 0.6f;  // of even light, on a white surface: about the mean of the lamps'
 
 // Dark style: black plastic in a room with half of the light.
 constexpr float kDarkAlbedo = 0.06f, kDarkLight = 0.5f;
@@ -42,7 +43,7 @@ float falloff(const Lamp& lamp, float d2) { return lamp.power * lamp.position.sq
 float sky(const Vector3f& normal) { return kGround + (kSky - kGround) * 0.5f * (1 + normal.z()); }
 
 // Of a white matt surface.
-float matt(const Vector3f& point, const Vector3f& normal) {
+float matt_in_lamps(const Vector3f& point, const Vector3f& normal) {
   float light = sky(normal);
   for (const Lamp& lamp : kLamps) {
     const Vector3f to = lamp.position - point;
@@ -90,14 +91,6 @@ float highlight(const Lamp& lamp, const SurfacePoint& s) {
   return d * visible * fresnel(s.to_eye.dot(h)) * float(M_PI) * nl * falloff(lamp, d2);
 }
 
-float glossy(const SurfacePoint& s) {
-  const Vector3f mirrored = 2 * s.normal.dot(s.to_eye) * s.normal - s.to_eye;
-  float light = kGlossyAlbedo * matt(s.point, s.normal) +
-                fresnel(s.normal.dot(s.to_eye)) * surroundings(mirrored);
-  for (const Lamp& lamp : kLamps) light += highlight(lamp, s);
-  return light;
-}
-
 // ------------------------------------------------------------------------------------- patterns
 
 // A rotation drawn evenly. Shoemake, "Uniform random rotations", Graphics Gems III, 1992.
@@ -136,6 +129,22 @@ float wood(const Vector3f& q) {
   return 0.12f + 0.5f * at * at * at;
 }
 
+// Balls of ink in space, one in each cell and inside of it, so that a point asks its own cell only.
+float speckles(const Vector3f& q, std::uint64_t seed) {
+  constexpr float kCell = 0.06f;
+  const Eigen::Vector3i cell = (q / kCell).array().floor().cast<int>();
+  std::uint64_t bits = seed;
+  for (int i = 0; i < 3; ++i) bits = mix(bits ^ std::uint64_t(std::int64_t(cell[i]) + 1000));
+  const auto next = [&bits] { return float(uniform(bits = mix(bits))); };
+  const float radius = kCell * (0.25f + 0.25f * next());
+  Vector3f middle;
+  for (int i = 0; i < 3; ++i)
+    middle[i] = float(cell[i]) * kCell + radius + (kCell - 2 * radius) * next();
+  return (q - middle).squaredNorm() < radius * radius ? 0.3f + 0.4f * next() : 0.0f;
+}
+
+bool is_printed(Style style) { return style == Style::kTextured || style == Style::kSpeckled; }
+
 }  // namespace
 
 Print::Print(int faces, std::uint64_t seed) : patterns_(faces) {
@@ -158,15 +167,29 @@ float Print::ink(const Vector3f& point, int face) const {
   }
 }
 
-Shader::Shader(const Tracer& tracer, const Tracer* clutter, Style style, double texture_strength,
-               std::uint64_t seed, double lift)
+Shader::Shader(const Tracer& tracer, const Tracer* clutter, const Look& look, std::uint64_t seed,
+               double lift)
     : tracer_(tracer),
-      style_(style == Style::kTextured && texture_strength == 0 ? Style::kPlain : style),
-      strength_(float(texture_strength)),
+      style_(is_printed(look.style) && look.texture_strength == 0 ? Style::kPlain : look.style),
+      strength_(float(look.texture_strength)),
+      even_(float(look.even_light)),
       seed_(seed),
       lift_(float(lift)),
+      stone_(rotation(hash(seed, 0, 0, 52))),
       print_(style_ == Style::kTextured ? tracer.num_faces() : 0, seed),
       clutter_print_(clutter ? clutter->num_faces() : 0, mix(seed)) {}
+
+// Of a white matt surface.
+float Shader::matt(const SurfacePoint& s) const {
+  return (1 - even_) * matt_in_lamps(s.point, s.normal) + even_ * kEven;
+}
+
+float Shader::glossy(const SurfacePoint& s) const {
+  const Vector3f mirrored = 2 * s.normal.dot(s.to_eye) * s.normal - s.to_eye;
+  float light = kGlossyAlbedo * matt(s) + fresnel(s.normal.dot(s.to_eye)) * surroundings(mirrored);
+  for (const Lamp& lamp : kLamps) light += (1 - even_) * highlight(lamp, s);
+  return light;
+}
 
 bool Shader::lamp_is_hidden(const SurfacePoint& s, float u, float v) const {
   const Vector3f to = (kStrongLamp.position - s.point).normalized();
@@ -178,22 +201,26 @@ bool Shader::lamp_is_hidden(const SurfacePoint& s, float u, float v) const {
 }
 
 float Shader::with_shadow(const SurfacePoint& s, float share) const {
-  const float strong = share > 0 ? share * lambert(kStrongLamp, s.point, s.normal) : 0.0f;
-  return kAlbedo * (kDimmed * matt(s.point, s.normal) + strong);
+  const float strong =
+      share > 0 ? (1 - even_) * share * lambert(kStrongLamp, s.point, s.normal) : 0.0f;
+  const float dimmed = kDimmed + (1 - kDimmed) * even_;
+  return kAlbedo * (dimmed * matt(s) + strong);
 }
 
 float Shader::object(const SurfacePoint& s, float u, float v) const {
   switch (style_) {
     case Style::kTextured:
-      return kAlbedo * matt(s.point, s.normal) * (1 - strength_ * print_.ink(s.point, s.face));
+      return kAlbedo * matt(s) * (1 - strength_ * print_.ink(s.point, s.face));
+    case Style::kSpeckled:
+      return kAlbedo * matt(s) * (1 - strength_ * speckles(stone_ * s.point, seed_));
     case Style::kDark:
-      return kDarkAlbedo * kDarkLight * matt(s.point, s.normal);
+      return kDarkAlbedo * kDarkLight * matt(s);
     case Style::kGlossy:
       return glossy(s);
     case Style::kShadowed:
       return with_shadow(s, lamp_is_hidden(s, u, v) ? 0.0f : 1.0f);
     default:
-      return kAlbedo * matt(s.point, s.normal);
+      return kAlbedo * matt(s);
   }
 }
 

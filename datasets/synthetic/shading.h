@@ -12,9 +12,19 @@ namespace sketchsplat {
 enum class Style {
   kPlain,     ///< matt grey, as in ABC-NEF
   kTextured,  ///< prints, checks or grain on every face: edges that are no geometry
+  kSpeckled,  ///< spots through and through, as of stone or rust: they run on over the edges
   kDark,      ///< dark matt object under little light
   kGlossy,    ///< highlights of the lamps, and the sky mirrored
   kShadowed,  ///< one strong small lamp whose shadows are cast
+};
+
+/// How an object looks.
+struct Look {
+  Style style = Style::kPlain;
+  double texture_strength = 1;  ///< contrast of Style::kTextured and kSpeckled, [0, 1]
+  /// Share of the light that comes evenly from all sides, as in a light tent or under an overcast
+  /// sky (without what corners shade of it), [0, 1]: at 1 a matt object's faces have one shade.
+  double even_light = 0;
 };
 
 /// What is printed on the faces of an object. The pattern of a face is one of three: lines of
@@ -47,10 +57,9 @@ class Shader {
  public:
   /// `tracer` (of the object, for cast shadows) must live longer. `clutter`: what stands behind it;
   /// null: nothing. `lift`: how far rays of shadows
-  /// start above the triangles, further than these stray from the surface. `texture_strength`: in
-  /// [0, 1], of Style::kTextured.
-  Shader(const Tracer& tracer, const Tracer* clutter, Style style, double texture_strength,
-         std::uint64_t seed, double lift);
+  /// start above the triangles, further than these stray from the surface.
+  Shader(const Tracer& tracer, const Tracer* clutter, const Look& look, std::uint64_t seed,
+         double lift);
 
   /// Light of the object. (u, v) in [0, 1): the point of the strong lamp that throws the shadow.
   float object(const SurfacePoint& s, float u, float v) const;
@@ -62,14 +71,17 @@ class Shader {
   bool patterned() const { return style_ != Style::kPlain && style_ != Style::kDark; }
 
  private:
+  float matt(const SurfacePoint& s) const;
+  float glossy(const SurfacePoint& s) const;
   float with_shadow(const SurfacePoint& s, float share) const;
   bool lamp_is_hidden(const SurfacePoint& s, float u, float v) const;
 
   const Tracer& tracer_;
   Style style_;
-  float strength_;
+  float strength_, even_;
   std::uint64_t seed_;
   float lift_;
+  Eigen::Matrix3f stone_;  // axes of what runs through the object
   Print print_;          // of the object
   Print clutter_print_;  // empty if there is none
 };

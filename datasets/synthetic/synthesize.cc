@@ -33,6 +33,7 @@ void check(const SynthesizeOptions& o) {
   require("object size", o.rig.object_size, 0, 10);
   require("spread", o.rig.spread_deg, 1, 180);
   require("texture strength", o.render.texture_strength, 0, 1);
+  require("even light", o.render.even_light, 0, 1);
   require("JPEG quality", o.render.jpeg, 0, 100);
   require("noise", o.render.noise, 0, 100);
   require("blur", o.render.blur, 0, 20);
@@ -126,8 +127,8 @@ RenderedView render_view(const SyntheticScene& scene, int view) {
   const RenderOptions& options = scene.options.render;
   const std::uint64_t seed = scene.options.seed;
   const Tracer* behind = scene.clutter ? &scene.clutter->tracer : nullptr;
-  const Shader shader(scene.tracer, behind, options.style, options.texture_strength, seed,
-                      scene.lift);
+  const Look look{options.style, options.texture_strength, options.even_light};
+  const Shader shader(scene.tracer, behind, look, seed, scene.lift);
   const Subject subject{scene.tracer, shader, scene.clutter.get(), scene.hints};
   Painting painting = paint(subject, scene.unit_views[view], seed, view);
   RenderedView out;

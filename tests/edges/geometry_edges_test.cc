@@ -73,14 +73,16 @@ TEST(GeometryEdges, FindsADepthStepToAFractionOfAPixelWithItsNearSide) {
   }
 }
 
-TEST(GeometryEdges, FindsACreaseWherePlanesMeet) {
-  const Plane a{{0.4, 0.1, -1}, -2}, b{{-0.3, 0.05, -1}, -2};
-  const auto inverse = [&](const Plane& plane, const Vector2d& p) {
+// Two planes, and the line n . p = c of the image where they meet: 1 / depth is affine in the pixel.
+struct Roof {
+  GeometryMaps maps;
+  Vector2d n;
+  double c;
+};
+Roof roof(const Plane& a, const Plane& b) {
+  const auto inverse = [](const Plane& plane, const Vector2d& p) {
     return plane.normal.normalized().dot(camera().ray(p)) / plane.offset;
   };
-  const GeometryMaps maps =
-      maps_of({a, b}, [&](const Vector2d& p) { return inverse(a, p) > inverse(b, p) ? 0 : 1; });
-  // 1 / depth is affine in the pixel, so the planes meet in a line.
   const auto difference = [&](double x, double y) {
     return inverse(a, {x, y}) - inverse(b, {x, y});
   };
@@ -88,9 +90,33 @@ TEST(GeometryEdges, FindsACreaseWherePlanesMeet) {
   Vector2d n(difference(1, 0) - at0, difference(0, 1) - at0);
   const double c = -at0 / n.norm();
   n.normalize();
-  const Offsets o = offsets(geometry_edges(maps, camera(), {}), n, c);
+  return {maps_of({a, b}, [&](const Vector2d& p) { return n.dot(p) > c ? 0 : 1; }), n, c};
+}
+
+TEST(GeometryEdges, FindsACreaseWherePlanesMeet) {
+  const Roof r = roof({{0.4, 0.1, -1}, -2}, {{-0.3, 0.05, -1}, -2});
+  const Offsets o = offsets(geometry_edges(r.maps, camera(), {}), r.n, r.c);
   EXPECT_GE(o.n, 50);
   EXPECT_LT(o.rms, 0.1);
+}
+
+// Splats that are wider than a pixel turn slowly from one face to the next.
+TEST(GeometryEdges, FindsAShallowCreaseThatIsSmeared) {
+  for (const double tilt : {0.08, 0.15}) {  // turns of 9 and 17 degrees
+    Roof r = roof({{tilt, 0.02, -1}, -2}, {{-tilt, -0.01, -1}, -2});
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const double d = r.n.dot(Vector2d(x, y)) - r.c, share = 0.5 * std::erfc(-d / 3);
+        r.maps.normal[0].at(x, y) = float(tilt * (2 * share - 1));
+        r.maps.normal[1].at(x, y) = float(0.03 * share - 0.01);
+      }
+    GeometryOptions narrow;
+    narrow.shallow_deg = 0;
+    EXPECT_LT(offsets(geometry_edges(r.maps, camera(), narrow), r.n, r.c).n, 10) << tilt;
+    const Offsets o = offsets(geometry_edges(r.maps, camera(), {}), r.n, r.c);
+    EXPECT_GE(o.n, 50) << tilt;
+    EXPECT_LT(o.rms, 0.3) << tilt;
+  }
 }
 
 TEST(GeometryEdges, ASlantedPlaneIsNoStepHoweverSteep) {

@@ -114,7 +114,7 @@ TEST(Parts, WallIsTheThicknessOfTheTray) {
 }
 
 TEST(Parts, CreaseIsTheAngleOfTheRidge) {
-  for (const char* part : {"ridge-block", "crease-disc"})
+  for (const char* part : {"ridge-block", "pleat-block", "crease-disc"})
     for (double crease : {3.0, 20.0, 90.0}) {
       const Truth truth = truth_of(part, 4, {{"crease", crease}});
       const bool found = std::any_of(
@@ -122,6 +122,13 @@ TEST(Parts, CreaseIsTheAngleOfTheRidge) {
           [&](const TruthCurve& c) { return std::abs(c.dihedral_deg - crease) < 1e-6; });
       EXPECT_TRUE(found) << part << " " << crease;
     }
+}
+
+TEST(Parts, RidgesAndValleysOfPleatsTurnAlike) {
+  const Truth truth = truth_of("pleat-block", 4, {{"crease", 15}, {"pleats", 3}});
+  EXPECT_EQ(5, std::count_if(truth.curves.begin(), truth.curves.end(), [](const TruthCurve& c) {
+              return std::abs(c.dihedral_deg - 15) < 1e-6;
+            }));
 }
 
 TEST(Parts, FilletIsTheRadiusOfTheArcs) {

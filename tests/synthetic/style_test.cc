@@ -108,6 +108,46 @@ TEST(Textured, PrintStandsStillOnTheObject) {
   EXPECT_GT(double(same) / all, 0.75);  // the rest lies on borders of the print
 }
 
+// Stone, not paint: whose face a place is does not matter, nor, in even light, how it is turned.
+TEST(Speckled, SpotsRunOnOverEdges) {
+  EXPECT_GT(share_above(steps_within_faces(small("box", Style::kSpeckled)), 20), 0.02);
+  const SyntheticScene scene = synthesize(small("box", Style::kSpeckled));
+  const Shader shader(scene.tracer, nullptr, {Style::kSpeckled, 1, 1}, 1, scene.lift);
+  float low = 10, high = 0;
+  for (int i = 0; i < 200; ++i) {
+    SurfacePoint s;
+    s.point = Vector3f(-0.5f + 0.005f * float(i), 0.2f, 0.3f);
+    s.to_eye = Vector3f(0, 0.6f, 0.8f);
+    s.normal = s.facet_normal = Vector3f::UnitY();
+    const float on_one = shader.object(s, 0, 0);
+    s.normal = s.facet_normal = Vector3f::UnitZ();
+    s.face = 1;
+    EXPECT_EQ(shader.object(s, 0, 0), on_one);
+    low = std::min(low, on_one), high = std::max(high, on_one);
+  }
+  EXPECT_LT(low, 0.8f * high);
+}
+
+TEST(EvenLight, TakesTheContrastBetweenFaces) {
+  double spread[3];
+  for (int k = 0; k < 3; ++k) {
+    SynthesizeOptions options = small("l-bracket", Style::kPlain);
+    options.render.even_light = 0.5 * k;
+    const RenderedView view = render_view(synthesize(options), 0);
+    float low = 1, high = 0;
+    for (size_t i = 0; i < view.mask.data.size(); ++i)
+      if (view.mask.data[i] == 1) {
+        low = std::min(low, view.picture.red.data[i]);
+        high = std::max(high, view.picture.red.data[i]);
+      }
+    spread[k] = 255 * (high - low);
+  }
+  EXPECT_GT(spread[0], 20);
+  EXPECT_LT(spread[1], 0.8 * spread[0]);
+  EXPECT_GT(spread[1], 0.2 * spread[0]);
+  EXPECT_LT(spread[2], 1);
+}
+
 TEST(Dark, IsAFewTensOfGreyLevelsAndItsFacesStillDiffer) {
   const double dark = mean_grey(small("box", Style::kDark));
   EXPECT_GT(dark, 15);
@@ -122,7 +162,7 @@ TEST(Glossy, LightOfAPlaceDependsOnTheEye) {
   s.point = Vector3f(0, 0, 0.5f);
   s.normal = s.facet_normal = Vector3f::UnitZ();
   for (Style style : {Style::kPlain, Style::kGlossy}) {
-    const Shader shader(scene.tracer, nullptr, style, 1, 1, scene.lift);
+    const Shader shader(scene.tracer, nullptr, {style, 1, 0}, 1, scene.lift);
     float low = 10, high = 0;
     for (int i = 0; i < 360; ++i) {
       const float a = float(i * M_PI / 180);
