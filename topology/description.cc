@@ -5,20 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "sketches/sample.h"
+
 namespace sketchsplat {
 namespace {
 
 constexpr double kSpacingPx = 2;
-
-// Middles of pieces of a curve that are about `spacing` long, no more of them than samples.
-Eigen::Matrix3Xd middles(const PlainCurve& curve, double spacing) {
-  const double length = sample_curve(curve).length;
-  const int n = spacing > 0 ? int(std::clamp(std::ceil(length / spacing), 1.0, 256.0)) : kPieces;
-  const CurveSamples samples = sample_curve(curve, 2 * n);
-  Eigen::Matrix3Xd out(3, n);
-  for (int i = 0; i < n; ++i) out.col(i) = samples.position.col(2 * i + 1);
-  return out;
-}
 
 }  // namespace
 
@@ -41,14 +33,20 @@ double misfit(const std::vector<PlainCurve>& curves, const Eigen::Matrix3Xd& poi
 }
 
 StrokePoints drawn_points(const Sketch& sketch, const TopologyOptions& options) {
-  StrokePoints out;
-  for (int s = 0; s < sketch.size(); ++s) {
-    PlainCurve curve;
-    curve.kind = sketch.strokes[s].kind;
-    const ControlPoints c = control_points(sketch, s);
-    std::copy_n(c.p.begin(), c.count, curve.p.begin());
-    out.push_back(is_sound(curve) ? middles(curve, kSpacingPx * options.footprint)
-                                  : Eigen::Matrix3Xd(3, 0));
+  StrokePoints out(sketch.size(), Eigen::Matrix3Xd(3, 0));
+  std::vector<bool> sound(sketch.size());
+  for (int s = 0; s < sketch.size(); ++s) sound[s] = is_sound(plain_curve(sketch, s));
+  const Sketch kept = keep_strokes(sketch, sound);
+  double spacing = kSpacingPx * options.footprint;
+  if (!(spacing > 0))
+    for (int s = 0; s < kept.size(); ++s)
+      spacing += stroke_length(kept, s) / (kPieces * double(kept.size()));
+  const SampleLayout layout = plan_samples(kept, spacing);
+  const Samples samples = evaluate_samples(kept, layout);
+  for (int s = 0, k = 0; s < sketch.size(); ++s) {
+    if (!sound[s]) continue;
+    out[s] = samples.position.middleCols(layout.first[k], layout.first[k + 1] - layout.first[k]);
+    ++k;
   }
   return out;
 }

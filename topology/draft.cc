@@ -21,9 +21,7 @@ Draft::Draft(const Sketch& sketch, const StrokePoints& points) {
   for (int s = 0; s < sketch.size(); ++s) {
     const Stroke& stroke = sketch.strokes[s];
     Piece piece;
-    piece.curve.kind = stroke.kind;
-    const ControlPoints controls = control_points(sketch, s);
-    std::copy_n(controls.p.begin(), controls.count, piece.curve.p.begin());
+    piece.curve = plain_curve(sketch, s);
     piece.begin = stroke.begin;
     piece.end = stroke.end;
     piece.evidence = sketch.evidence[s];

@@ -56,6 +56,14 @@ double searched_parameter(const PlainCurve& c, const CurveSamples& samples, cons
 
 }  // namespace
 
+PlainCurve plain_curve(const Sketch& sketch, int stroke) {
+  PlainCurve curve;
+  curve.kind = sketch.strokes[stroke].kind;
+  const ControlPoints c = control_points(sketch, stroke);
+  std::copy_n(c.p.begin(), c.count, curve.p.begin());
+  return curve;
+}
+
 bool is_sound(const PlainCurve& curve) {
   for (int k = 0; k < curve.size(); ++k)
     if (!curve.p[k].allFinite()) return false;

@@ -21,6 +21,8 @@ struct PlainCurve {
   const Eigen::Vector3d& end() const { return p[size() - 1]; }  ///< of an open curve
 };
 
+PlainCurve plain_curve(const Sketch& sketch, int stroke);
+
 /// Finite control points and some extent: what a sketch may hold.
 bool is_sound(const PlainCurve& curve);
 

@@ -7,6 +7,7 @@
 
 #include "sketches/conic.h"
 #include "sketches/ellipse_run.h"
+#include "sketches/fit.h"
 
 namespace sketchsplat {
 namespace {
@@ -163,6 +164,30 @@ Interval turned_by(const Run& run, const Vector3d& centre, const Vector3d& x, co
   return {low, high};
 }
 
+// Handles by linear least squares at the parameters of the nearest points: from where the cubic is,
+// for a start by chord lengths (fit_bezier) hooks ends that have moved beyond the points.
+PlainCurve refit_cubic_between(PlainCurve cubic, const Eigen::Matrix3Xd& points) {
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    const CurveSamples samples = sample_curve(cubic);
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Matrix<double, 2, 3> pull = Eigen::Matrix<double, 2, 3>::Zero();
+    for (int i = 0; i < points.cols(); ++i) {
+      const double t = closest_point(cubic, samples, points.col(i)).t, u = 1 - t;
+      const Eigen::Vector2d basis(3 * u * u * t, 3 * u * t * t);
+      const Vector3d rest = points.col(i) - u * u * u * cubic.p[0] - t * t * t * cubic.p[3];
+      normal += basis * basis.transpose();
+      pull += basis * rest.transpose();
+    }
+    // Points all over the curve make the smaller eigenvalue a twentieth of the trace.
+    if (!(normal.determinant() > 1e-3 * std::pow(normal.trace(), 2))) return cubic;
+    const Eigen::Matrix<double, 2, 3> handles = normal.inverse() * pull;
+    cubic.p[1] = handles.row(0);
+    cubic.p[2] = handles.row(1);
+  }
+  return cubic;
+}
+
 }  // namespace
 
 Run joined(const std::vector<Run>& runs) {
@@ -230,68 +255,15 @@ std::optional<PlainCurve> refit_arc(const std::vector<Run>& runs, double closing
   return if_sound(arc);
 }
 
-std::optional<PlainCurve> refit_arc_between(const Run& points) {
-  const int n = int(points.weight.size());
-  const Vector3d a = points.position.col(0), b = points.position.col(n - 1), middle = (a + b) / 2;
-  const double half = (b - a).norm() / 2;
-  if (!(half > 0) || !(points.weight.sum() > 0)) return std::nullopt;
-  const Vector3d along = (b - a) / (2 * half);
-  Vector3d up = points.position * points.weight / points.weight.sum() - middle;
-  up -= along * along.dot(up);
-  if (!(up.norm() > 1e-9 * half)) return std::nullopt;
-  up.normalize();
-  // A point (x, z) of the circle through both ends of sagitta h obeys
-  //   x^2 + z^2 - a^2 = z (h - a^2 / h); c = h - a^2 / h is linear, so least squares gives it.
-  double num = 0, den = 0;
-  for (int k = 0; k < n; ++k) {
-    const Vector3d q = (points.position.col(k) - middle) / half;
-    const double u = q.dot(along), z = q.dot(up);
-    num += points.weight[k] * z * (u * u + z * z - 1);
-    den += points.weight[k] * z * z;
-  }
-  if (!(den > 0)) return std::nullopt;
-  const double c = num / den, h = c / 2 + std::hypot(c / 2, 1);  // positive root of h^2 - c h - 1
-  PlainCurve arc;
-  arc.kind = StrokeKind::kArc;
-  // The root loses digits when the arc is flat (c large and negative): use its product form then.
-  const double sagitta = c > 0 ? h : 1 / (std::hypot(c / 2, 1) - c / 2);
-  arc.p = {a, middle + up * (half * sagitta), b, Vector3d::Zero()};
-  return if_sound(arc);
-}
-
-namespace {
-
-// Handles by linear least squares at the parameters of the nearest points.
-PlainCurve refit_cubic_between(PlainCurve cubic, const Eigen::Matrix3Xd& points) {
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
-    const CurveSamples samples = sample_curve(cubic);
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-    Eigen::Matrix<double, 2, 3> pull = Eigen::Matrix<double, 2, 3>::Zero();
-    for (int i = 0; i < points.cols(); ++i) {
-      const double t = closest_point(cubic, samples, points.col(i)).t, u = 1 - t;
-      const Eigen::Vector2d basis(3 * u * u * t, 3 * u * t * t);
-      const Vector3d rest = points.col(i) - u * u * u * cubic.p[0] - t * t * t * cubic.p[3];
-      normal += basis * basis.transpose();
-      pull += basis * rest.transpose();
-    }
-    // Points all over the curve make the smaller eigenvalue a twentieth of the trace.
-    if (!(normal.determinant() > 1e-3 * std::pow(normal.trace(), 2))) return cubic;
-    const Eigen::Matrix<double, 2, 3> handles = normal.inverse() * pull;
-    cubic.p[1] = handles.row(0);
-    cubic.p[2] = handles.row(1);
-  }
-  return cubic;
-}
-
-}  // namespace
-
 PlainCurve refit_between(const PlainCurve& curve, const Eigen::Matrix3Xd& points) {
-  if (curve.kind == StrokeKind::kBezier) return refit_cubic_between(curve, points);
-  if (curve.kind != StrokeKind::kArc || points.cols() == 0) return curve;
-  Run run{Eigen::Matrix3Xd(3, points.cols() + 2), VectorXd::Ones(points.cols() + 2)};
-  run.position << curve.begin(), points, curve.end();
-  return refit_arc_between(run).value_or(curve);
+  PlainCurve out = curve;
+  if (curve.kind == StrokeKind::kArc && points.cols() > 0) {
+    const ArcFit fit = fit_arc(points, curve.begin(), curve.end());
+    if (fit.success) out.p[1] = fit.apex;
+  } else if (curve.kind == StrokeKind::kBezier) {
+    out = refit_cubic_between(curve, points);
+  }
+  return is_sound(out) ? out : curve;
 }
 
 std::optional<PlainCurve> refit_bezier(const Run& points, VectorXd t) {

@@ -30,10 +30,6 @@ std::optional<PlainCurve> refit_circle(const Run& points);
 /// circle itself if that is at most `closing` world units long. A run must turn less than 360 deg.
 std::optional<PlainCurve> refit_arc(const std::vector<Run>& runs, double closing);
 
-/// Arc between the first and the last of the points: the sagitta that fits best in the plane of the
-/// ends and the mean of the points. Nothing if the ends coincide.
-std::optional<PlainCurve> refit_arc_between(const Run& points);
-
 /// The open curve between its own ends that fits the points (3 x n, in any order) best: an arc by
 /// its sagitta, a cubic by its handles. Lines and elliptic arcs, and whatever the points do not
 /// tell, stay as they are.

@@ -66,9 +66,7 @@ TEST(EllipticArcs, KeepTheirShapeWhenTheirEndsMove) {
   Sketch s;
   add_elliptic(&s, kU, kV, 20, 170);
   const ControlPoints c = control_points(s, 0);
-  PlainCurve curve;
-  curve.kind = StrokeKind::kEllipticArc;
-  std::copy_n(c.p.begin(), 4, curve.p.begin());
+  const PlainCurve curve = plain_curve(s, 0);
   const Vector3d a = c.p[0] + Vector3d(1, -0.5, 0.3), b = c.p[3] + Vector3d(-0.4, 1, 0.2);
   const PlainCurve moved = move_ends(curve, a, b);
   EXPECT_EQ(moved.begin(), a);

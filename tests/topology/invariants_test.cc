@@ -98,14 +98,6 @@ Sketch random_sketch(int seed, int curves) {
   return s;
 }
 
-PlainCurve curve_of(const Sketch& s, int i) {
-  const ControlPoints c = control_points(s, i);
-  PlainCurve curve;
-  curve.kind = s.strokes[i].kind;
-  std::copy_n(c.p.begin(), c.count, curve.p.begin());
-  return curve;
-}
-
 /// Largest distance between the samples of a stroke and the best partner of its kind; infinite
 /// beyond `reach`, or if the numbers of strokes differ.
 double difference(const Sketch& a, const Sketch& b, double reach) {
@@ -117,11 +109,11 @@ double difference(const Sketch& a, const Sketch& b, double reach) {
   double worst = 0;
   for (int i = 0; i < a.size(); ++i) {
     double best = INFINITY;
-    const PlainCurve ca = curve_of(a, i);
+    const PlainCurve ca = plain_curve(a, i);
     const Vector3d middle = mean(ca);
     for (int j = 0; j < b.size(); ++j) {
       if (a.strokes[i].kind != b.strokes[j].kind) continue;
-      const PlainCurve cb = curve_of(b, j);
+      const PlainCurve cb = plain_curve(b, j);
       if ((mean(cb) - middle).norm() > reach) continue;
       best = std::min(best, std::max(max_distance(ca, sample_curve(cb).position),
                                      max_distance(cb, sample_curve(ca).position)));

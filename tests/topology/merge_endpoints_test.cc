@@ -146,14 +146,14 @@ TEST(MergeEndpoints, AnArcThatIsExtendedStaysOnItsCircle) {
 TEST(MergeEndpoints, AShortStrokeIsRemovedAndItsEndsAreJoined) {
   Sketch s;
   add_line(&s, {-100, 0, 0}, {0, 0, 0});
-  const int stub = s.add_stroke(StrokeKind::kLine, 1, s.add_node({1.5, 1, 0}), {});
+  const int bevel = s.add_stroke(StrokeKind::kLine, 1, s.add_node({1.5, 1, 0}), {});
   s.add_stroke(StrokeKind::kLine, 2, s.add_node({1.5, 90, 0}), {});
   const PassResult r = merge_endpoints(s, one_pixel());
   expect_sound(r, s);
-  EXPECT_EQ(r.remap.stroke[stub], -1);
+  EXPECT_EQ(r.remap.stroke[bevel], -1);
   EXPECT_EQ(r.sketch.size(), 2);
   EXPECT_EQ(r.sketch.nodes.cols(), 3);
-  // The corner of the two long lines, not an end of the stub.
+  // The corner of the two long lines, not an end of the bevel.
   EXPECT_LT((r.sketch.nodes.col(r.sketch.strokes[0].end) - Vector3d(1.5, 0, 0)).norm(), 1e-9);
 }
 

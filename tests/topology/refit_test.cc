@@ -25,7 +25,6 @@ TEST(Refit, PointsThatCoincideGiveNothing) {
   EXPECT_FALSE(refit_line({same}));
   EXPECT_FALSE(refit_circle(same));
   EXPECT_FALSE(refit_arc({same}, 0));
-  EXPECT_FALSE(refit_arc_between(same));
   EXPECT_FALSE(refit_bezier(same, t));
   EXPECT_FALSE(refit_ellipse(same, t));
 }
@@ -45,17 +44,6 @@ TEST(Refit, AnArcOfMoreThanHalfACircleIsRecovered) {
   EXPECT_NEAR(sample_curve(*arc).length, stroke_length(s, 0), 1e-9);
 }
 
-TEST(Refit, AnArcBetweenItsEndsHasTheRightSagitta) {
-  for (double to : {1.0, 40.0, 180.0, 300.0}) {
-    Sketch s;
-    add_arc(&s, {0, 0, 0}, 10, 0, to);
-    const Eigen::Matrix3Xd p = sample_stroke(s, 0, 0.01 * stroke_length(s, 0));
-    const auto arc = refit_arc_between({p, Eigen::VectorXd::Ones(p.cols())});
-    ASSERT_TRUE(arc) << to;
-    EXPECT_NEAR(sample_curve(*arc).length, stroke_length(s, 0), 1e-6) << to;
-  }
-}
-
 TEST(Refit, ACurveBetweenItsEndsComesBackToItsPointsInAnyOrder) {
   Sketch s;
   add_bezier(&s, {0, 0, 0}, {10, 30, 0}, {40, 30, 10}, {50, 0, 20});
@@ -63,10 +51,7 @@ TEST(Refit, ACurveBetweenItsEndsComesBackToItsPointsInAnyOrder) {
   for (int i : {0, 1}) {
     Eigen::Matrix3Xd p = sample_stroke(s, i, 1).rowwise().reverse();
     p.col(0).swap(p.col(p.cols() / 2));
-    PlainCurve curve;
-    curve.kind = s.strokes[i].kind;
-    const ControlPoints c = control_points(s, i);
-    std::copy_n(c.p.begin(), c.count, curve.p.begin());
+    PlainCurve curve = plain_curve(s, i);
     curve.p[1] += Vector3d(1, -2, 0.5);
     ASSERT_GT(max_distance(curve, p), 0.5);
     EXPECT_LT(max_distance(refit_between(curve, p), p), 0.1) << kind_name(curve.kind);
