@@ -2,17 +2,19 @@
 #include "pipelines/close_graph.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <tuple>
 
 #include "pipelines/round_arcs.h"
 #include "sketches/closest.h"
 #include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "topology/description.h"
 
 namespace sketchsplat {
 namespace {
 
+using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double kStepPx = 0.5;    // along a loose end
@@ -23,11 +25,29 @@ bool is_shy(StrokeKind kind) {
   return kind == StrokeKind::kBezier || kind == StrokeKind::kEllipticArc;
 }
 
+// Points of a curve before and after a parameter.
+std::array<Matrix3Xd, 2> shared_out(const PlainCurve& curve, double t, const Matrix3Xd& points) {
+  const CurveSamples samples = sample_curve(curve);
+  std::array<Matrix3Xd, 2> out = {Matrix3Xd(3, 0), Matrix3Xd(3, 0)};
+  for (int i = 0; i < points.cols(); ++i) {
+    Matrix3Xd& part = out[closest_point(curve, samples, points.col(i)).t > t];
+    part.conservativeResize(3, part.cols() + 1);
+    part.rightCols(1) = points.col(i);
+  }
+  return out;
+}
+
 // The sketch while strokes come, go and are split.
 class Graph {
  public:
-  Graph(const Sketch& sketch, const EdgeWorld& world, const CloseOptions& options)
-      : s_(sketch), world_(world), options_(options), alive_(sketch.size(), true) {}
+  Graph(const Sketch& sketch, const Described& described, const EdgeWorld& world,
+        const CloseOptions& options)
+      : s_(sketch),
+        points_(described.points),
+        cost_(described.cost),
+        world_(&world),
+        options_(&options),
+        alive_(sketch.size(), true) {}
 
   void bridge_lines();
   void join_ends();
@@ -43,7 +63,9 @@ class Graph {
     Vector3d place;
   };
 
-  double px(double n) const { return n * world_.footprint; }
+  double px(double n) const { return n * world_->footprint; }
+  PlainCurve curve(int stroke) const { return plain_curve(s_, stroke); }
+  double misfit_of(int stroke) const { return misfit(curve(stroke), points_[stroke], cost_); }
   std::vector<int> degrees() const {
     std::vector<int> degree(s_.nodes.cols());
     for (int i = 0; i < s_.size(); ++i)
@@ -58,20 +80,25 @@ class Graph {
     (at_end ? s_.strokes[stroke].end : s_.strokes[stroke].begin) = node;
   }
   int add(StrokeKind kind, int begin, int end, const std::vector<Vector3d>& handles,
-          const Evidence& evidence) {
+          const Evidence& evidence, const Matrix3Xd& points) {
     alive_.push_back(true);
+    points_.push_back(points);
     return s_.add_stroke(kind, begin, end, handles, evidence);
   }
   bool bridge(int a, bool a_end, int b, bool b_end);
   ControlPoints reaching(int stroke, const std::vector<int>& degree) const;
   Meeting first_meeting(int stroke, bool at_end) const;
   void meet(int stroke, bool at_end, const Meeting& meeting);
+  double added_cost(int stroke, const PlainCurve& longer) const;
+  double growth(int stroke, const Meeting& meeting, const Graph& met) const;
   void move_end(int stroke, bool at_end, const Vector3d& place);
   int split(int stroke, double t);
 
   Sketch s_;
-  const EdgeWorld& world_;
-  const CloseOptions& options_;
+  StrokePoints points_;
+  DescriptionCost cost_;
+  const EdgeWorld* world_;
+  const CloseOptions* options_;
   std::vector<bool> alive_;
   Closed result_;
 };
@@ -84,22 +111,21 @@ bool Graph::bridge(int a, bool a_end, int b, bool b_end) {
   const Vector3d x = s_.nodes.col(near_a), y = s_.nodes.col(near_b);
   const Vector3d axis = (q - p).normalized();
   const auto aside = [&](const Vector3d& v) { return (v - p - axis.dot(v - p) * axis).norm(); };
-  if (aside(x) > px(options_.bridge_px) || aside(y) > px(options_.bridge_px)) return false;
+  if (aside(x) > px(options_->bridge_px) || aside(y) > px(options_->bridge_px)) return false;
   const double sx = axis.dot(x - p), sy = axis.dot(y - p), sq = axis.dot(q - p);
   if (!(0 < sx && sx < sy && sy < sq)) return false;
-  // Each piece must point at the other: a short one says little, so its error grows with the gap.
-  const double gap = sy - sx;
-  for (const auto& [from, to, other] : {std::tuple(p, x, y), std::tuple(q, y, x)}) {
-    const Vector3d d = (to - from).normalized();
-    const Vector3d miss = other - to - d.dot(other - to) * d;
-    if (miss.norm() > px(options_.bridge_px) * (1 + gap / (to - from).norm())) return false;
-  }
-  ControlPoints line;
-  line.p[0] = x, line.p[1] = y, line.count = 2;
-  if (!may_hold_edge(StrokeKind::kLine, line, 0, 1, gap, world_, options_.gap)) return false;
+  ControlPoints rest;
+  rest.p[0] = x, rest.p[1] = y, rest.count = 2;
+  PlainCurve line;
+  line.p[0] = p, line.p[1] = q;
+  const Matrix3Xd points = points_of(points_, {a, b});
+  const double growth =
+      misfit(line, points, cost_) - misfit_of(a) - misfit_of(b) - 2 * cost_.node_price +
+      gap_cost(StrokeKind::kLine, rest, 0, 1, sy - sx, *world_, options_->gap);
+  if (!(growth < 0)) return false;
   alive_[a] = alive_[b] = false;
   const Evidence& e = s_.evidence[(x - p).norm() > (q - y).norm() ? a : b];
-  add(StrokeKind::kLine, far_a, far_b, {}, Evidence(e));
+  add(StrokeKind::kLine, far_a, far_b, {}, Evidence(e), points);
   ++result_.bridged;
   return true;
 }
@@ -139,7 +165,7 @@ ControlPoints Graph::reaching(int stroke, const std::vector<int>& degree) const 
   const ControlPoints c = control_points(s_, stroke);
   if (is_closed(s.kind) || is_shy(s.kind)) return c;
   const double length = stroke_length(s_, stroke);
-  const double more = std::min(px(options_.reach_px) / length, 0.5);
+  const double more = std::min(px(options_->reach_px) / length, 0.5);
   return subcurve(s.kind, c, degree[s.begin] == 1 ? -more : 0, degree[s.end] == 1 ? 1 + more : 1);
 }
 
@@ -147,10 +173,10 @@ ControlPoints Graph::reaching(int stroke, const std::vector<int>& degree) const 
 Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
   Meeting best;
   const double length = stroke_length(s_, stroke);
-  const double back = std::min(px(options_.reach_px) / 2, length / 4);
+  const double back = std::min(px(options_->reach_px) / 2, length / 4);
   const Stroke& own = s_.strokes[stroke];
-  const double ahead = is_shy(own.kind) ? std::min(px(options_.reach_px) / 2, 0.1 * length)
-                                        : std::min(px(options_.reach_px), 0.5 * length);
+  const double ahead = is_shy(own.kind) ? std::min(px(options_->reach_px) / 2, 0.1 * length)
+                                        : std::min(px(options_->reach_px), 0.5 * length);
   const ControlPoints curve = control_points(s_, stroke);
   const int steps = int((ahead + back) / px(kStepPx));
   const std::vector<int> degree = degrees();
@@ -163,18 +189,18 @@ Graph::Meeting Graph::first_meeting(int stroke, bool at_end) const {
       return closest_on_curve(s_.strokes[other].kind, c.p.data(), *place);
     };
     Meeting here;
-    double least = px(options_.aside_px);
+    double least = px(options_->aside_px);
     for (int k = 0; k <= steps; ++k) {
       const double along = -back + k * px(kStepPx);
       Vector3d place, way, p, tangent;
       const ClosestPoint q = miss(along, &place, &way);
-      if (k == 0 && q.distance > px(4 * options_.reach_px)) break;  // far away
+      if (k == 0 && q.distance > px(4 * options_->reach_px)) break;  // far away
       if (!(q.distance < least)) continue;
       evaluate_curve<double>(s_.strokes[other].kind, c.p.data(), q.t, &p, &tangent);
       const double cosine = std::abs(way.normalized().dot(tangent.normalized()));
-      if (cosine > std::cos(options_.least_deg * M_PI / 180)) continue;
+      if (cosine > std::cos(options_->least_deg * M_PI / 180)) continue;
       least = q.distance;
-      here = {other, along / world_.footprint, q.position};
+      here = {other, along / world_->footprint, q.position};
     }
     if (here.stroke >= 0 && (best.stroke < 0 || std::abs(here.along) < std::abs(best.along)))
       best = here;
@@ -207,9 +233,10 @@ int Graph::split(int stroke, double t) {
   const ControlPoints a = subcurve(own.kind, c, 0, t), b = subcurve(own.kind, c, t, 1);
   const int node = s_.add_node(a.p[a.count - 1]);
   const Evidence e = s_.evidence[stroke];
+  const auto parts = shared_out(curve(stroke), t, points_[stroke]);
   alive_[stroke] = false;
-  add(own.kind, own.begin, node, {a.p.begin() + 1, a.p.begin() + a.count - 1}, e);
-  add(own.kind, node, own.end, {b.p.begin() + 1, b.p.begin() + b.count - 1}, e);
+  add(own.kind, own.begin, node, {a.p.begin() + 1, a.p.begin() + a.count - 1}, e, parts[0]);
+  add(own.kind, node, own.end, {b.p.begin() + 1, b.p.begin() + b.count - 1}, e, parts[1]);
   ++result_.split;
   return node;
 }
@@ -220,7 +247,7 @@ void Graph::meet(int stroke, bool at_end, const Meeting& m) {
   const Stroke& other = s_.strokes[m.stroke];
   if (is_closed(other.kind)) return;  // it has no node; the end lies on it
   const double length = stroke_length(s_, m.stroke);
-  const double reach = px(options_.reach_px);
+  const double reach = px(options_->reach_px);
   const bool at_far_end =
       (s_.nodes.col(other.end) - m.place).norm() < (s_.nodes.col(other.begin) - m.place).norm();
   const int node = at_far_end ? other.end : other.begin;
@@ -242,6 +269,38 @@ void Graph::meet(int stroke, bool at_end, const Meeting& m) {
   set_node(stroke, at_end, split(m.stroke, on.t));
 }
 
+// What it costs [nat] that a stroke goes on beyond where it ended.
+double Graph::added_cost(int stroke, const PlainCurve& longer) const {
+  const CurveSamples samples = sample_curve(longer);
+  double cost = 0;
+  for (bool at_end : {false, true}) {
+    const Closest old = closest_point(longer, samples, s_.nodes.col(node_of(stroke, at_end)));
+    const double share = at_end ? 1 - old.t : old.t;
+    if (!(share * samples.length > px(kStepPx))) continue;
+    ControlPoints c;
+    std::copy_n(longer.p.begin(), c.count = longer.size(), c.p.begin());
+    cost += gap_cost(longer.kind, c, at_end ? old.t : 0, at_end ? 1 : old.t,
+                     share * samples.length, *world_, options_->gap);
+  }
+  return cost;
+}
+
+// What it does to the description [nat] that the end of a stroke meets another one. A node on a
+// curve is one number where a loose end is three.
+double Graph::growth(int stroke, const Meeting& m, const Graph& met) const {
+  std::vector<PlainCurve> curves = {met.curve(stroke)};
+  const bool split = met.s_.size() > s_.size();
+  for (int i = split ? s_.size() : m.stroke; i < (split ? met.s_.size() : m.stroke + 1); ++i)
+    curves.push_back(met.curve(i));
+  double sum = misfit(curves, points_of(points_, {stroke, m.stroke}), cost_) - misfit_of(stroke) -
+               misfit_of(m.stroke);
+
+  sum += added_cost(stroke, curves[0]);
+  if (!split && !is_closed(s_.strokes[m.stroke].kind)) sum += added_cost(m.stroke, curves[1]);
+  const bool shared = !split && !is_closed(s_.strokes[m.stroke].kind);
+  return sum - cost_.node_price * (shared ? 1 : 2.0 / 3);
+}
+
 void Graph::join_ends() {
   for (int i = 0; i < s_.size(); ++i)
     for (bool at_end : {false, true}) {
@@ -254,17 +313,22 @@ void Graph::join_ends() {
       // Neither folds a stroke nor doubles another one.
       if (!is_closed(other.kind) && (other.begin == far || other.end == far)) {
         const double place = (s_.nodes.col(far) - m.place).norm();
-        if (place < px(options_.reach_px)) continue;
+        if (place < px(options_->reach_px)) continue;
       }
-      meet(i, at_end, m);
+      Graph met = *this;
+      met.meet(i, at_end, m);
+      if (growth(i, m, met) < 0) *this = std::move(met);
     }
 }
 
 }  // namespace
 
-Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const CloseOptions& options) {
+Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const Prices& prices,
+                   const CloseOptions& options) {
+  Described described = describe(sketch, world, prices);
   int rounded = 0;
-  Graph graph(round_arcs(sketch, world, options.round, options.gap, &rounded), world, options);
+  const Sketch rounder = round_arcs(sketch, world, options.round, &described, &rounded);
+  Graph graph(rounder, described, world, options);
   graph.bridge_lines();
   graph.join_ends();
   Closed closed = graph.finish();

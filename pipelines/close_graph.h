@@ -2,20 +2,22 @@
 #pragma once
 
 #include "edges/lift.h"
+#include "pipelines/describe.h"
 #include "pipelines/gap.h"
 #include "pipelines/round_arcs.h"
 #include "sketches/sketch.h"
 
 namespace sketchsplat {
 
+/// Where gaps are looked for. Whether they are closed is a matter of the description alone.
 struct CloseOptions {
   bool on = true;
   double reach_px = 8;    ///< [px] that a loose end goes on, or back, to meet another stroke
   double aside_px = 1;    ///< [px] by which it may miss it
   double least_deg = 15;  ///< [deg] between strokes that meet: others run side by side
-  double bridge_px = 1;   ///< [px] of the pieces of one line from it, over a gap
+  double bridge_px = 3;   ///< [px] of the pieces of one line from it, over a gap
   RoundOptions round;     ///< of arcs that are all of their circle
-  GapOptions gap;         ///< that may be closed
+  GapOptions gap;         ///< that is to be closed
 };
 
 struct Closed {
@@ -26,12 +28,13 @@ struct Closed {
   int rounded = 0;  ///< arcs that became circles
 };
 
-/// Makes one graph of the strokes, as a part's edges are one:
+/// Makes one graph of the strokes, as a part's edges are one, where that takes fewer words (nodes
+/// less, misfit more, and an edge must run through every gap: gap_cost):
 ///   - arcs of most of a circle or an ellipse whose ends are loose are all of it (round_arcs),
 ///   - two pieces of one line whose facing ends are loose are the line,
 ///   - a loose end whose curve meets another stroke nearby ends there: in its end node, or in a new
 ///     node that splits it.
-/// Gaps are closed only where no view contradicts (may_hold_edge).
-Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const CloseOptions& options);
+Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const Prices& prices,
+                   const CloseOptions& options);
 
 }  // namespace sketchsplat

@@ -2,16 +2,16 @@
 #include "pipelines/gap.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "edges/match.h"
 #include "sketches/curve.h"
+#include "sketches/segment.h"
 
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr int kFewestSure = 6;  // sightings of a gap that tell something
 
 // Points on a curve between two parameters, two pixels apart, with tangents.
 CurvePoints points_between(StrokeKind kind, const ControlPoints& c, double t0, double t1,
@@ -32,27 +32,29 @@ CurvePoints points_between(StrokeKind kind, const ControlPoints& c, double t0, d
 
 }  // namespace
 
-bool may_hold_edge(StrokeKind kind, const ControlPoints& curve, double t0, double t1, double length,
-                   const EdgeWorld& world, const GapOptions& options) {
-  const bool narrow = length <= options.narrow_px * world.footprint;
-  if (world.hull.empty()) return narrow;
+double gap_cost(StrokeKind kind, const ControlPoints& curve, double t0, double t1, double length,
+                const EdgeWorld& world, const GapOptions& options) {
   const CurvePoints gap = points_between(kind, curve, t0, t1, length, world.footprint);
   MatchOptions match;
   match.reach_px = 1.5;
   match.min_run = 0;
   match.exclusive = false;
   const Matches matches = match_samples(world, gap, match);
-  int sure = 0, seen = 0;
-  for (int i = 0; i < gap.position.cols(); ++i)
-    for (size_t v = 0; v < world.views.size(); ++v) {
-      if (!world.hull.surely_visible(gap.position.col(i), world.views[v].center_in_world()))
-        continue;
-      ++sure;
-      for (int m = matches.first[i]; m < matches.first[i + 1]; ++m)
-        seen += matches.matches[m].view == int(v);
-    }
-  if (sure < kFewestSure) return narrow || options.trusting;
-  return seen >= options.least_seen * sure;
+  const bool blind = world.hull.empty();
+  const double rate = blind ? options.found_rate : options.seen_rate;
+  const double if_seen = std::log(options.chance_rate / rate);
+  const double if_not = std::log((1 - options.chance_rate) / (1 - rate));
+  double cost = 0;
+  for (int i = 0; i < gap.position.cols(); ++i) {
+    std::vector<char> seen(world.views.size());
+    for (int m = matches.first[i]; m < matches.first[i + 1]; ++m) seen[matches.matches[m].view] = 1;
+    double here = 0;
+    for (size_t v = 0; v < world.views.size(); ++v)
+      if (blind || world.hull.surely_visible(gap.position.col(i), world.views[v].center_in_world()))
+        here += seen[v] ? if_seen : if_not;
+    cost += std::clamp(here, -kOutlierNats, kOutlierNats);
+  }
+  return cost;
 }
 
 }  // namespace sketchsplat

@@ -10,6 +10,10 @@
 namespace sketchsplat {
 namespace {
 
+// Where the loss of a long edge is least: its splats overlap, and what they let through falls
+// faster aside than their depth does. In widths of the edge maps, and optical.
+constexpr double kWidth = 0.78, kDepth = 0.95;
+
 // Everything that descends, as one vector: nodes, handles, then per stroke the logarithm of the
 // splats' width and of their optical depth.
 Eigen::VectorXd to_vector(const Eigen::Matrix3Xd& nodes, const Eigen::Matrix3Xd& handles,
@@ -119,8 +123,10 @@ OptimizeResult optimize(const Sketch& sketch, const EdgeWorld& world,
   const Eigen::MatrixXf visibility =
       options.visibility ? sample_visibility(o, views, options.gap) : Eigen::MatrixXf();
   const int strokes = sketch.size();
-  Drawing drawing{sketch, Eigen::VectorXd::Constant(strokes, options.sigma_px * world.footprint),
-                  Eigen::VectorXd::Ones(strokes)};
+  Drawing drawing{
+      sketch,
+      Eigen::VectorXd::Constant(strokes, kWidth * options.sigma_px * world.footprint),
+      Eigen::VectorXd::Constant(strokes, kDepth)};
   Eigen::VectorXd x = to_vector(sketch.nodes, sketch.handles, drawing.width.array().log(),
                                 drawing.depth.array().log());
   Eigen::VectorXd rate = Eigen::VectorXd::Constant(x.size(), options.step_px * world.footprint);

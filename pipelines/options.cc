@@ -25,7 +25,7 @@ const std::vector<Preset>& presets() {
         {"surfel-renderings", "600"}}},
       {"balanced", {}},
       {"accurate",
-       {{"steps", "60"},
+       {{"steps", "24"},
         {"lift-views", "49"},
         {"lift-stride", "2"},
         {"surfel-renderings", "2400"}}},

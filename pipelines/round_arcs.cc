@@ -3,30 +3,40 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <set>
 
 #include "sketches/conic.h"
 #include "sketches/curve.h"
 #include "sketches/ellipse_run.h"
+#include "topology/description.h"
 
 namespace sketchsplat {
 namespace {
 
+using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 class Rounder {
  public:
   Rounder(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
-          const GapOptions& gap)
+          Described* described)
       : s_(sketch),
         world_(world),
         options_(options),
-        gap_options_(gap),
+        cost_(described->cost),
+        points_(described->points),
         alive_(sketch.size(), true) {}
 
   void round_arcs();
   void round_elliptic_arcs();
   void ellipses_to_circles();
-  Sketch sketch() const { return keep_strokes(s_, alive_); }
+  Sketch finish() {
+    StrokePoints kept;
+    for (int i = 0; i < s_.size(); ++i)
+      if (alive_[i]) kept.push_back(points_[i]);
+    points_ = std::move(kept);
+    return keep_strokes(s_, alive_);
+  }
   int rounded() const { return rounded_; }
 
  private:
@@ -34,18 +44,35 @@ class Rounder {
   int node_of(int stroke, bool at_end) const {
     return at_end ? s_.strokes[stroke].end : s_.strokes[stroke].begin;
   }
-  // Strokes a and b, which may be the same, become a closed one.
-  void replace(int a, int b, StrokeKind kind, const std::vector<Vector3d>& handles) {
+  // Strokes a and b, which may be the same, become a closed one if that takes fewer words; `gap` is
+  // what it costs to go on between their loose ends.
+  bool replace(int a, int b, double gap, const PlainCurve& curve) {
+    const std::set<int> parts = {a, b};
+    const Matrix3Xd points = points_of(points_, parts);
+    double growth = gap + misfit(curve, points, cost_) + cost_.price * own_parameters(curve.kind);
+    std::set<int> nodes;
+    for (int i : parts) {
+      const Stroke& s = s_.strokes[i];
+      growth -= misfit(plain_curve(s_, i), points_[i], cost_);
+      growth -= cost_.price * own_parameters(s.kind);
+      if (!is_closed(s.kind)) nodes.insert({s.begin, s.end});
+    }
+    growth -= cost_.node_price * double(nodes.size());
+    if (!(growth < 0)) return false;
     alive_[a] = alive_[b] = false;
     alive_.push_back(true);
-    s_.add_stroke(kind, -1, -1, handles, Evidence(s_.evidence[a]));
+    points_.push_back(points);
+    const std::vector<Vector3d> handles(curve.p.begin(), curve.p.begin() + curve.size());
+    s_.add_stroke(curve.kind, -1, -1, handles, Evidence(s_.evidence[a]));
+    return true;
   }
   void round_ellipse(int a, bool a_back, int b, bool b_back);
 
   Sketch s_;
   const EdgeWorld& world_;
   const RoundOptions& options_;
-  const GapOptions& gap_options_;
+  const DescriptionCost& cost_;
+  StrokePoints& points_;
   std::vector<bool> alive_;
   int rounded_ = 0;
 };
@@ -60,10 +87,9 @@ void Rounder::round_arcs() {
     if (c.straight || c.angle < options_.least_turn * 2 * M_PI) continue;
     const double gap = (2 * M_PI - c.angle) * c.radius;
     const double t1 = 2 * M_PI / c.angle;
-    if (!may_hold_edge(stroke.kind, control_points(s_, i), 1, t1, gap, world_, gap_options_))
-      continue;
-    replace(i, i, StrokeKind::kCircle, {c.centre, c.normal * c.radius});
-    ++rounded_;
+    const double cost =
+        gap_cost(stroke.kind, control_points(s_, i), 1, t1, gap, world_, options_.gap);
+    rounded_ += replace(i, i, cost, circle_of_arc(plain_curve(s_, i)));
   }
 }
 
@@ -93,7 +119,7 @@ void Rounder::round_elliptic_arcs() {
 
 void Rounder::round_ellipse(int a, bool a_back, int b, bool b_back) {
   constexpr int kPoints = 32;
-  Eigen::Matrix3Xd points(3, a == b ? kPoints : 2 * kPoints - 1);
+  Matrix3Xd points(3, a == b ? kPoints : 2 * kPoints - 1);
   Vector3d d;
   for (int k = 0; k < points.cols(); ++k) {
     const double t = double(k % (kPoints - 1)) / (kPoints - 1);
@@ -105,42 +131,46 @@ void Rounder::round_ellipse(int a, bool a_back, int b, bool b_back) {
   }
   const EllipseRun fit = ellipse_along(points);
   const double gap = 2 * M_PI - fit.sweep();
-  if (!fit.ok || fit.distance.maxCoeff() > options_.aside_px * world_.footprint) return;
-  if (fit.sweep() < options_.least_turn * 2 * M_PI || gap < -0.2) return;
+  if (!fit.ok || fit.sweep() < options_.least_turn * 2 * M_PI || gap < -0.2) return;
+  PlainCurve ellipse;
+  ellipse.kind = StrokeKind::kEllipse;
+  ellipse.p = {fit.centre, fit.p, fit.q, Vector3d::Zero()};
+  double cost = 0;
   if (gap > 0) {
     ControlPoints rest;
-    rest.p[0] = fit.centre, rest.p[1] = fit.p, rest.p[2] = fit.q;
+    rest.p = ellipse.p;
     const double t0 = fit.angle[points.cols() - 1] / (2 * M_PI), t1 = t0 + gap / (2 * M_PI);
     const double length = gap * 0.5 * (fit.p.norm() + fit.q.norm());  // about
-    if (!may_hold_edge(StrokeKind::kEllipse, rest, t0, t1, length, world_, gap_options_)) return;
+    cost = gap_cost(StrokeKind::kEllipse, rest, t0, t1, length, world_, options_.gap);
   }
-  replace(a, b, StrokeKind::kEllipse, {fit.centre, fit.p, fit.q});
-  ++rounded_;
+  rounded_ += replace(a, b, cost, ellipse);
 }
 
-// An ellipse that is round to half a pixel is a circle.
+// An ellipse that the images cannot tell from a circle is one.
 void Rounder::ellipses_to_circles() {
   for (int i = 0; i < s_.size(); ++i) {
     if (!alive_[i] || s_.strokes[i].kind != StrokeKind::kEllipse) continue;
     const ControlPoints c = control_points(s_, i);
     const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
     const double a = axes.major.norm(), b = axes.minor.norm();
-    if ((a - b) / 2 > options_.circle_px * world_.footprint) continue;
-    const Vector3d normal = axes.major.cross(axes.minor).normalized();
-    replace(i, i, StrokeKind::kCircle, {c.p[0], (a + b) / 2 * normal});
+    PlainCurve circle;
+    circle.kind = StrokeKind::kCircle;
+    circle.p[0] = c.p[0];
+    circle.p[1] = (a + b) / 2 * axes.major.cross(axes.minor).normalized();
+    replace(i, i, 0, circle);
   }
 }
 
 }  // namespace
 
 Sketch round_arcs(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
-                  const GapOptions& gap, int* rounded) {
-  Rounder rounder(sketch, world, options, gap);
+                  Described* described, int* rounded) {
+  Rounder rounder(sketch, world, options, described);
   rounder.round_arcs();
   rounder.round_elliptic_arcs();
   rounder.ellipses_to_circles();
   *rounded = rounder.rounded();
-  return rounder.sketch();
+  return rounder.finish();
 }
 
 }  // namespace sketchsplat

@@ -2,20 +2,23 @@
 #pragma once
 
 #include "edges/lift.h"
+#include "pipelines/describe.h"
 #include "pipelines/gap.h"
 #include "sketches/sketch.h"
 
 namespace sketchsplat {
 
+/// Where circles are looked for. Whether they are made is a matter of the description alone.
 struct RoundOptions {
   double least_turn = 0.4;  ///< share of a turn from which arcs may be all of it
-  double aside_px = 1;      ///< [px] of two arcs from their common ellipse
-  double circle_px = 0.5;   ///< [px] between an ellipse and the circle that it is
+  GapOptions gap;           ///< to the whole turn
 };
 
 /// Most of a circle or an ellipse, in one arc or in two that share a node, is all of it if nothing
-/// else ends there and the gap may hold an edge (may_hold_edge). `rounded` counts them.
+/// else ends there and that takes fewer words: it has no nodes, but an edge must run through the
+/// gap (gap_cost). The same of ellipses that are circles. `described` is of the sketch and follows
+/// it; `rounded` counts arcs.
 Sketch round_arcs(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
-                  const GapOptions& gap, int* rounded);
+                  Described* described, int* rounded);
 
 }  // namespace sketchsplat

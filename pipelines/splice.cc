@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "sketches/closest.h"
 #include "sketches/conic.h"
 #include "sketches/curve.h"
+#include "topology/description.h"
 
 namespace sketchsplat {
 namespace {
@@ -28,8 +30,9 @@ struct Splice {
 
 class Splicer {
  public:
-  Splicer(const Sketch& sketch, const EdgeWorld& world, const SpliceOptions& options)
-      : world_(world), options_(options), degree_(node_degrees(sketch)) {
+  Splicer(const Sketch& sketch, const EdgeWorld& world, const Prices& prices,
+          const SpliceOptions& options)
+      : world_(world), prices_(prices), options_(options), degree_(node_degrees(sketch)) {
     result_.sketch = sketch;
     for (int i = 0; i < sketch.size(); ++i) length_.push_back(stroke_length(sketch, i));
   }
@@ -38,7 +41,7 @@ class Splicer {
     for (const Splice& s : by_length(&Splicer::overlap))
       if (is_loose(s.a) && is_loose(s.b) && overlap(s.a, s.b) >= 0) cut(s.a, s.b);
     for (const Splice& s : by_length(&Splicer::gap))
-      if (is_loose(s.a) && is_loose(s.b) && gap(s.a, s.b) >= 0) bridge(s.a, s.b);
+      if (is_loose(s.a) && is_loose(s.b)) bridge(s.a, s.b);
     return result_;
   }
 
@@ -96,32 +99,54 @@ class Splicer {
     return lies_on(a, b, &tb) && lies_on(b, a, &ta) ? chord : -1;
   }
 
-  // Makes the stroke end at the parameter t, in this node.
-  void trim(const LooseEnd& e, double t, int to) {
-    Sketch& s = result_.sketch;
-    Stroke& own = s.strokes[e.stroke];
-    const ControlPoints whole = control_points(s, e.stroke);
-    ControlPoints c = e.at_end ? subcurve(own.kind, whole, 0, t) : subcurve(own.kind, whole, t, 1);
-    const Vector3d place = s.nodes.col(to);
-    if (own.kind == StrokeKind::kEllipticArc)
+  // The stroke as it is if it ends at the parameter t, in this place.
+  PlainCurve trimmed(const LooseEnd& e, double t, const Vector3d& place) const {
+    PlainCurve curve = plain_curve(result_.sketch, e.stroke);
+    const ControlPoints whole = control_points(result_.sketch, e.stroke);
+    ControlPoints c =
+        e.at_end ? subcurve(curve.kind, whole, 0, t) : subcurve(curve.kind, whole, t, 1);
+    if (curve.kind == StrokeKind::kEllipticArc)
       c = elliptic_arc_between(c, e.at_end ? c.p[0] : place, e.at_end ? place : c.p[3]);
-    for (int h = 0; h < num_handles(own.kind); ++h) s.handles.col(own.handle + h) = c.p[1 + h];
+    c.p[e.at_end ? c.count - 1 : 0] = place;
+    std::copy_n(c.p.begin(), c.count, curve.p.begin());
+    return curve;
+  }
+
+  void trim(const LooseEnd& e, const PlainCurve& curve, int to) {
+    Stroke& own = result_.sketch.strokes[e.stroke];
+    for (int h = 0; h < num_handles(own.kind); ++h)
+      result_.sketch.handles.col(own.handle + h) = curve.p[1 + h];
     (e.at_end ? own.end : own.begin) = to;
   }
 
+  // What the images say, asked for when it is first needed.
+  const Described& described() {
+    if (!described_) described_ = describe(result_.sketch, world_, prices_);
+    return *described_;
+  }
+
+  // Both end in the middle of what they share, if that takes fewer words: it is one node less.
   void cut(const LooseEnd& a, const LooseEnd& b) {
     double ta = 0, tb = 0;
     lies_on(a, b, &tb), lies_on(b, a, &ta);
-    ta = 0.5 * (ta + a.at_end), tb = 0.5 * (tb + b.at_end);
-    Vector3d p, q, d;
+    ta = 0.5 * (ta + a.at_end);
+    Vector3d p, d;
     evaluate_stroke(result_.sketch, a.stroke, ta, &p, &d);
-    evaluate_stroke(result_.sketch, b.stroke, tb, &q, &d);
     const ClosestPoint foot = distance_to_stroke(result_.sketch, b.stroke, p);
-    const int joint = result_.sketch.add_node(0.5 * (p + foot.position));
+    const Vector3d joint = 0.5 * (p + foot.position);
+    const PlainCurve to_a = trimmed(a, ta, joint), to_b = trimmed(b, foot.t, joint);
+
+    const auto& [cost, points] = described();
+    double growth = -cost.node_price;
+    for (int s : {a.stroke, b.stroke})
+      growth += misfit({to_a, to_b}, points[s], cost) -
+                misfit(plain_curve(result_.sketch, s), points[s], cost);
+    if (!(growth < 0)) return;
+    const int node_of_both = result_.sketch.add_node(joint);
     degree_.push_back(2);
     degree_[node(a)] = degree_[node(b)] = 0;
-    trim(a, ta, joint);
-    trim(b, foot.t, joint);
+    trim(a, to_a, node_of_both);
+    trim(b, to_b, node_of_both);
     ++result_.overlaps;
   }
 
@@ -142,20 +167,23 @@ class Splicer {
     const double width = (q - p).norm();
     if (!(width > 0 && width <= std::min(length_[a.stroke], length_[b.stroke]))) return -1;
     const double least = std::cos(options_.bend_deg * M_PI / 180) * width;
-    if (u.dot(q - p) < least || v.dot(p - q) < least) return -1;
-    const ControlPoints c = way_between(a, b);
-    return may_hold_edge(StrokeKind::kBezier, c, 0, 1, width, world_, options_.gap) ? width : -1;
+    return u.dot(q - p) < least || v.dot(p - q) < least ? -1 : width;
   }
 
+  // A cubic goes over the gap if what the views see there pays for it.
   void bridge(const LooseEnd& a, const LooseEnd& b) {
     const ControlPoints c = way_between(a, b);
+    const double seen = gap_cost(StrokeKind::kBezier, c, 0, 1, gap(a, b), world_, options_.gap);
+    if (!(seen + prices_.parameter * own_parameters(StrokeKind::kBezier) < 0)) return;
     ++degree_[node(a)], ++degree_[node(b)];
     result_.sketch.add_stroke(StrokeKind::kBezier, node(a), node(b), {c.p[1], c.p[2]});
     ++result_.gaps;
   }
 
   const EdgeWorld& world_;
+  const Prices& prices_;
   const SpliceOptions& options_;
+  std::optional<Described> described_;
   std::vector<int> degree_;
   std::vector<double> length_;  // of the strokes as they were
   Spliced result_;
@@ -163,8 +191,9 @@ class Splicer {
 
 }  // namespace
 
-Spliced splice(const Sketch& sketch, const EdgeWorld& world, const SpliceOptions& options) {
-  Spliced spliced = Splicer(sketch, world, options).run();
+Spliced splice(const Sketch& sketch, const EdgeWorld& world, const Prices& prices,
+               const SpliceOptions& options) {
+  Spliced spliced = Splicer(sketch, world, prices, options).run();
   // Nodes that were cut off are nobody's.
   spliced.sketch = keep_strokes(spliced.sketch, std::vector<bool>(spliced.sketch.size(), true));
   return spliced;

@@ -2,17 +2,18 @@
 #pragma once
 
 #include "edges/lift.h"
+#include "pipelines/describe.h"
 #include "pipelines/gap.h"
 #include "sketches/sketch.h"
 
 namespace sketchsplat {
 
+/// Where splices are looked for. Whether they are made is a matter of the description alone.
 struct SpliceOptions {
   double aside_px = 1;   ///< [px] between two strokes that run along the same edge
   double turn_deg = 20;  ///< [deg] between their tangents there
   double bend_deg = 45;  ///< [deg] of the way over a gap from the tangent of either end
-  /// Of gaps: no longer than the shorter stroke, and most views that must see them do.
-  GapOptions gap = {8, 0.5, false};
+  GapOptions gap;
 };
 
 struct Spliced {
@@ -23,8 +24,10 @@ struct Spliced {
 
 /// Makes chains of the strokes of one edge: where two loose ends (nodes that one stroke holds) run
 /// past one another along the same curve, both are cut in the middle of what they share; where they
-/// face one another over a gap that the views see an edge in, a cubic goes on from both. The
-/// narrowest first. Two lines over a gap are left to close_graph.
-Spliced splice(const Sketch& sketch, const EdgeWorld& world, const SpliceOptions& options);
+/// face one another over a gap no longer than either stroke, a cubic goes on from both, if what the
+/// views see in the gap pays for it. The narrowest first. Two lines over a gap are left to
+/// close_graph.
+Spliced splice(const Sketch& sketch, const EdgeWorld& world, const Prices& prices,
+               const SpliceOptions& options);
 
 }  // namespace sketchsplat

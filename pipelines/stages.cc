@@ -106,6 +106,10 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
 }
 
 // One price and one least deviation for all that is described.
+Prices prices(const ReconstructOptions& options) {
+  return {options.segment.price, options.rechain.sigma_px};
+}
+
 SelectOptions select_options(const ReconstructOptions& options) {
   SelectOptions select = options.select;
   select.price = options.segment.price;
@@ -131,15 +135,10 @@ RegularizeOptions regularize_options(const ReconstructOptions& options) {
 // The graph that says what the edgels do in fewer words.
 Simplified simpler_graph(const Sketch& sketch, const EdgeWorld& world,
                          const ReconstructOptions& options) {
-  const Observation o = observe_places(sketch, world);
-  StrokePoints points;
-  for (int s = 0; s < sketch.size(); ++s) points.push_back(measure(o, s, world.footprint).point);
+  const Described described = describe(sketch, world, prices(options));
   TopologyOptions topology = options.topology;
-  topology.footprint = world.footprint;
-  topology.price = options.segment.price;
-  topology.sigma_px = place_sigma_px(o, options.rechain.sigma_px);
-  topology.node_price = node_price(world, topology.sigma_px);
-  return simplify(sketch, topology, points);
+  static_cast<DescriptionCost&>(topology) = described.cost;
+  return simplify(sketch, topology, described.points);
 }
 
 void count_regularities(const Regularized& regular, RunReport* report) {
@@ -156,7 +155,7 @@ void count_regularities(const Regularized& regular, RunReport* report) {
 // Chains of strokes in as few words as their edgels allow.
 Round rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
   if (!options.rechain.on) return {sketch, false};
-  const Spliced spliced = splice(sketch, world, options.splice);
+  const Spliced spliced = splice(sketch, world, prices(options), options.splice);
   const Rechained r = rechain(spliced.sketch, world, options.segment, options.rechain);
   const bool changed = spliced.overlaps + spliced.gaps + r.changes > 0;
   return {changed ? polish(r.sketch, world, early(options)) : sketch, changed};
@@ -323,7 +322,7 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
   const Closed closed =
-      options.close.on ? close_graph(sketch, world, options.close) : Closed{sketch};
+      options.close.on ? close_graph(sketch, world, prices(options), options.close) : Closed{sketch};
   Sketch out = closed.sketch;
   Regularized regular;
   if (options.final_polish) {

@@ -15,12 +15,12 @@ constexpr double kSpacingPx = 2;
 }  // namespace
 
 double misfit(const PlainCurve& curve, const Eigen::Matrix3Xd& points,
-              const TopologyOptions& options) {
+              const DescriptionCost& options) {
   return misfit(std::vector<PlainCurve>{curve}, points, options);
 }
 
 double misfit(const std::vector<PlainCurve>& curves, const Eigen::Matrix3Xd& points,
-              const TopologyOptions& options) {
+              const DescriptionCost& options) {
   Eigen::VectorXd distance = Eigen::VectorXd::Constant(points.cols(), INFINITY);
   for (const PlainCurve& curve : curves) {
     const CurveSamples samples = sample_curve(curve);

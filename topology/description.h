@@ -16,10 +16,10 @@ constexpr int own_parameters(StrokeKind kind) {
 
 /// What it costs [nat] that the images put the `points` (3 x n) of a stroke where the curve is not.
 double misfit(const PlainCurve& curve, const Eigen::Matrix3Xd& points,
-              const TopologyOptions& options);
+              const DescriptionCost& options);
 /// The same for points that may lie on any of some curves.
 double misfit(const std::vector<PlainCurve>& curves, const Eigen::Matrix3Xd& points,
-              const TopologyOptions& options);
+              const DescriptionCost& options);
 
 /// Points on the strokes as they are drawn, about two footprints apart: for sketches that no images
 /// belong to. Unsound strokes have none.

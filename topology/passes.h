@@ -8,18 +8,20 @@
 
 namespace sketchsplat {
 
-/// Every distance is a multiple of `footprint`, so a sketch in other units gives the same result.
-struct TopologyOptions {
-  double footprint = 0;  ///< world length of one pixel at the object; 0 merges only what coincides
+/// What descriptions cost. Every distance is a multiple of `footprint`, so a sketch in other units
+/// gives the same result.
+struct DescriptionCost {
+  double footprint = 0;    ///< world length of one pixel at the object; 0 merges only what coincides
+  double sigma_px = 0.2;   ///< standard deviation of what the images say of a place
+  double price = 3;        ///< [nat] of a parameter, see SegmentOptions
+  double node_price = 20;  ///< [nat] of a node: three times the logarithm of the places it may take
+};
 
+struct TopologyOptions : DescriptionCost {
   // Where changes are looked for. Whether they are made is a matter of the description alone.
   double endpoint_px = 3;  ///< between ends that may become one node
   double gap_px = 6;       ///< between the ends of two pieces that may be one curve
   double offset_px = 1.5;  ///< of either from the other where they run side by side
-
-  double sigma_px = 0.2;   ///< standard deviation of what the images say of a place
-  double price = 3;        ///< [nat] of a parameter, see SegmentOptions
-  double node_price = 20;  ///< [nat] of a node: three times the logarithm of the places it may take
 
   double min_opacity = 0;     ///< see remove_low_opacity
   int min_support_views = 0;  ///< see visibility_filter

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 const Vector3d kMiddle(0.5, 0.5, 0.5);
 
 // A world whose images show `truth`; without masks.
-EdgeWorld world_of(const Sketch& truth) {
-  return ideal_world(ring_of_views(12, kMiddle, 3), polylines_of(truth));
+EdgeWorld world_of(const Sketch& truth, int views = 12) {
+  return ideal_world(ring_of_views(views, kMiddle, 3), polylines_of(truth));
 }
 
 Sketch frame() {
@@ -27,7 +27,7 @@ Sketch frame() {
 class CloseGraph : public testing::Test {
  protected:
   CloseGraph() : world(world_of(frame())), px(world.footprint) {}
-  Closed close(const Sketch& s) const { return close_graph(s, world, {}); }
+  Closed close(const Sketch& s) const { return close_graph(s, world, {}, {}); }
   const EdgeWorld world;
   const double px;
 };
@@ -159,15 +159,16 @@ TEST_F(CloseGraph, ArcsOfNearlyAnEllipseAreTheEllipseUnlessSomethingEndsThere) {
   EXPECT_EQ(close(half).rounded, 0);
 }
 
-TEST_F(CloseGraph, WithoutMasksWideGapsStayOpen) {
+TEST_F(CloseGraph, WithoutMasksWideGapsStayOpenUnlessAnEdgeIsSeenThere) {
   Sketch s;
-  add_line(&s, {0.2, 0.2, 0.5}, {0.4, 0.2, 0.5});
-  add_line(&s, {0.6, 0.2, 0.5}, {0.8, 0.2, 0.5});
-  EXPECT_EQ(close(s).bridged, 0);
+  add_line(&s, {0.2, 0.2, 0.5}, {0.35, 0.2, 0.5});
+  add_line(&s, {0.65, 0.2, 0.5}, {0.8, 0.2, 0.5});
+  EXPECT_EQ(close_graph(s, world_of(s, 40), {}, {}).bridged, 0);
+  EXPECT_EQ(close_graph(s, world_of(frame(), 40), {}, {}).bridged, 1);
   Sketch near;
   add_line(&near, {0.2, 0.2, 0.5}, {0.5, 0.2, 0.5});
   add_line(&near, {0.5 + 6 * px, 0.2, 0.5}, {0.8, 0.2, 0.5});
-  const Closed c = close(near);
+  const Closed c = close_graph(near, world_of(near), {}, {});
   EXPECT_EQ(c.bridged, 1);
   ASSERT_EQ(c.sketch.size(), 1);
   EXPECT_NEAR(stroke_length(c.sketch, 0), 0.6, 1e-9);

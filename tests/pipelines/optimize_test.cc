@@ -139,6 +139,17 @@ TEST(Optimize, LowersTheLossAndBringsALineBackThatIsOnePixelOff) {
   EXPECT_LT(one.final_loss, one.initial_loss) << "the last step counts";
 }
 
+// Otherwise the steps go into widths and depths, which are the same for all edges.
+TEST(Optimize, ALineThatIsWhereItShouldBeStartsNearTheLeastLoss) {
+  Sketch truth;
+  add_line(&truth, {0.2, 0.3, 0.4}, {0.8, 0.4, 0.6});
+  const EdgeWorld w = ideal_world(ring_of_views(4, kMiddle, 3), polylines_of(truth));
+  OptimizeOptions options;
+  options.steps = 30;
+  const OptimizeResult r = optimize(truth, w, make_targets(w, options), options);
+  EXPECT_GT(r.final_loss, 0.5 * r.initial_loss);
+}
+
 // A back edge is seen in every other view; in the rest it is hidden and another edge passes beside
 // its projection, always on the same side.
 struct HiddenEdge {
