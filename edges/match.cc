@@ -106,6 +106,27 @@ Eigen::Vector3d distance_gradient(const EdgeWorld& world, const SampleMatch& mat
       .transpose();
 }
 
+namespace {
+
+void add_quadratics(const EdgeWorld& world, const CurvePoints& samples, Matches* out) {
+  const int n = int(samples.position.cols());
+  out->information.assign(n, Eigen::Matrix3d::Zero());
+  out->slope = Eigen::Matrix3Xd::Zero(3, n);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i) {
+    for (int k = out->first[i]; k < out->first[i + 1]; ++k) {
+      const SampleMatch& m = out->matches[k];
+      const Eigen::Vector3d a = distance_gradient(world, m, samples.position.col(i));
+      out->information[i] += m.weight * a * a.transpose();
+      out->slope.col(i) += m.weight * a * double(m.distance_px);
+    }
+    const Eigen::Vector3d t = samples.tangent.col(i);
+    out->information[i] += kSlide * out->information[i].trace() * t * t.transpose();
+  }
+}
+
+}  // namespace
+
 Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
                       const MatchOptions& options) {
   const int n = int(samples.position.cols()), views = int(world.views.size());
@@ -126,17 +147,7 @@ Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
   std::vector<int> next(out.first.begin(), out.first.end() - 1);
   for (const auto& list : by_view)
     for (const SampleMatch& m : list) out.matches[next[m.sample]++] = m;
-  out.information.assign(n, Eigen::Matrix3d::Zero());
-  out.slope = Eigen::Matrix3Xd::Zero(3, n);
-  for (const SampleMatch& m : out.matches) {
-    const Eigen::Vector3d a = distance_gradient(world, m, samples.position.col(m.sample));
-    out.information[m.sample] += m.weight * a * a.transpose();
-    out.slope.col(m.sample) += m.weight * a * double(m.distance_px);
-  }
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d t = samples.tangent.col(i);
-    out.information[i] += kSlide * out.information[i].trace() * t * t.transpose();
-  }
+  if (options.quadratics) add_quadratics(world, samples, &out);
   out.sigma_px = robust_sigma(out.matches);
   return out;
 }

@@ -25,6 +25,7 @@ struct MatchOptions {
   /// So do the edgels between those that neighbouring samples of a curve found: samples are farther
   /// apart than edgels, and what lies beside a visible curve would find the others.
   bool exclusive_between = false;
+  bool quadratics = true;  ///< fill in `information` and `slope`
 };
 
 /// One edgel that a sample explains.
@@ -40,8 +41,8 @@ struct SampleMatch {
 struct Matches {
   std::vector<SampleMatch> matches;
   std::vector<int> first;                    ///< N + 1, into matches
-  std::vector<Eigen::Matrix3d> information;  ///< [px^2 / world^2]
-  Eigen::Matrix3Xd slope;                    ///< 3 x N [px^2 / world]
+  std::vector<Eigen::Matrix3d> information;  ///< [px^2 / world^2]; empty if not asked for
+  Eigen::Matrix3Xd slope;                    ///< 3 x N [px^2 / world]; empty if not asked for
   double sigma_px = 0;                       ///< robust standard deviation of the distances
   int views_of(int sample) const { return first[sample + 1] - first[sample]; }
 };

@@ -119,9 +119,9 @@ bool Graph::bridge(int a, bool a_end, int b, bool b_end) {
   PlainCurve line;
   line.p[0] = p, line.p[1] = q;
   const Matrix3Xd points = points_of(points_, {a, b});
-  const double growth =
-      misfit(line, points, cost_) - misfit_of(a) - misfit_of(b) - 2 * cost_.node_price +
-      gap_cost(StrokeKind::kLine, rest, 0, 1, sy - sx, *world_, options_->gap);
+  const double growth = misfit(line, points, cost_) - misfit_of(a) - misfit_of(b) -
+                        2 * cost_.node_price +
+                        gap_cost(StrokeKind::kLine, rest, 0, 1, sy - sx, *world_, options_->gap);
   if (!(growth < 0)) return false;
   alive_[a] = alive_[b] = false;
   const Evidence& e = s_.evidence[(x - p).norm() > (q - y).norm() ? a : b];
@@ -279,8 +279,8 @@ double Graph::added_cost(int stroke, const PlainCurve& longer) const {
     if (!(share * samples.length > px(kStepPx))) continue;
     ControlPoints c;
     std::copy_n(longer.p.begin(), c.count = longer.size(), c.p.begin());
-    cost += gap_cost(longer.kind, c, at_end ? old.t : 0, at_end ? 1 : old.t,
-                     share * samples.length, *world_, options_->gap);
+    cost += gap_cost(longer.kind, c, at_end ? old.t : 0, at_end ? 1 : old.t, share * samples.length,
+                     *world_, options_->gap);
   }
   return cost;
 }

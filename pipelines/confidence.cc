@@ -10,7 +10,7 @@ namespace sketchsplat {
 namespace {
 
 // Median over the strokes, weighted by their edgels.
-double typical(const Observation& o, double StrokeStats::*member) {
+double typical(const StrokeObservation& o, double StrokeStats::*member) {
   std::vector<std::pair<double, int>> values;
   double total = 0;
   for (const StrokeStats& s : o.strokes)
@@ -49,7 +49,7 @@ Numbers StrokeFeatures::named() const {
 }
 
 std::vector<StrokeFeatures> stroke_features(const Sketch& sketch, const EdgeWorld& world,
-                                            const Observation& observation) {
+                                            const StrokeObservation& observation) {
   const double width = typical(observation, &StrokeStats::width_px);
   const double strength = typical(observation, &StrokeStats::strength);
   const double rms = typical(observation, &StrokeStats::rms_px);

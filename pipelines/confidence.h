@@ -31,7 +31,7 @@ struct StrokeFeatures {
 
 /// `observation`: of this sketch, whose evidence is filled but for the confidence.
 std::vector<StrokeFeatures> stroke_features(const Sketch& sketch, const EdgeWorld& world,
-                                            const Observation& observation);
+                                            const StrokeObservation& observation);
 
 /// Probability that a stroke is right: 90 % of it within 5 thousandths of the object's longest side
 /// of a true edge. A logistic model of a few features, see confidence.cc for where its numbers are

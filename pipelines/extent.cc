@@ -25,7 +25,7 @@ struct Run {
 std::vector<std::vector<int>> owners(const Sketch& sketch, const EdgeWorld& world) {
   MatchOptions match;
   match.reach_px = 1.0;
-  const Observation o = observe(sketch, world, match, 2.0, 1);
+  const Observation o = observe(sketch, world, match, 2.0);
   std::vector<std::vector<int>> owner;
   for (const EdgelMap& m : world.maps) owner.emplace_back(m.edgels.size(), -1);
   for (const SampleMatch& m : o.matches.matches) owner[m.view][m.edgel] = o.layout.stroke[m.sample];

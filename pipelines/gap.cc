@@ -39,6 +39,7 @@ double gap_cost(StrokeKind kind, const ControlPoints& curve, double t0, double t
   match.reach_px = 1.5;
   match.min_run = 0;
   match.exclusive = false;
+  match.quadratics = false;
   const Matches matches = match_samples(world, gap, match);
   const bool blind = world.hull.empty();
   const double rate = blind ? options.found_rate : options.seen_rate;

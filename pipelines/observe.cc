@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <set>
+#include <utility>
 
 #include "sketches/covariance.h"
 
@@ -30,7 +31,7 @@ constexpr double kPlaceReach = 1.5;  // [px] of an edgel, and of the place, from
 Observation observe_places(const Sketch& sketch, const EdgeWorld& world) {
   MatchOptions match;
   match.reach_px = kPlaceReach;
-  return observe(sketch, world, match, 2.0, 1);
+  return observe(sketch, world, match, 2.0);
 }
 
 double place_sigma_px(const Observation& o, double least_px) {
@@ -109,18 +110,23 @@ double six_digits(double x) {
 }  // namespace
 
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
-                    double spacing_px, int min_views) {
+                    double spacing_px) {
   Observation o;
   o.layout = plan_samples(sketch, spacing_px * world.footprint);
   o.samples = evaluate_samples(sketch, o.layout);
   o.matches =
       match_samples(world, {o.samples.position, o.samples.tangent, o.layout.first}, options);
-  for (int i = 0; i < sketch.size(); ++i)
-    o.strokes.push_back(summarise(world, o, i, min_views, nullptr));
   return o;
 }
 
-void record_evidence(const Observation& o, const EdgeWorld& world, double reach_px,
+StrokeObservation with_strokes(Observation observation, const EdgeWorld& world, int min_views) {
+  StrokeObservation out{std::move(observation), {}};
+  for (int i = 0; i + 1 < int(out.layout.first.size()); ++i)
+    out.strokes.push_back(summarise(world, out, i, min_views, nullptr));
+  return out;
+}
+
+void record_evidence(const StrokeObservation& o, const EdgeWorld& world, double reach_px,
                      Sketch* sketch) {
   std::vector<Sighting> sightings;
   sightings.reserve(o.matches.matches.size());

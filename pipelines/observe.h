@@ -28,12 +28,17 @@ struct Observation {
   SampleLayout layout;
   Samples samples;
   Matches matches;
-  std::vector<StrokeStats> strokes;  ///< one per stroke
+};
+/// With what it says about each stroke.
+struct StrokeObservation : Observation {
+  std::vector<StrokeStats> strokes;
 };
 
-/// Samples every `spacing_px` footprints; `min_views` views make a sample covered.
+/// Samples every `spacing_px` footprints.
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
-                    double spacing_px, int min_views);
+                    double spacing_px);
+/// `min_views` views make a sample covered.
+StrokeObservation with_strokes(Observation observation, const EdgeWorld& world, int min_views);
 
 /// Where the edgels of all views put the samples of a stroke, across it.
 struct Measured {
@@ -58,7 +63,7 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& observation, in
 
 /// Copies what was seen into the sketch's evidence (opacity = cover), with the covariance of every
 /// stroke from the edgels it was matched with within `reach_px`. Not the confidence.
-void record_evidence(const Observation& observation, const EdgeWorld& world, double reach_px,
+void record_evidence(const StrokeObservation& observation, const EdgeWorld& world, double reach_px,
                      Sketch* sketch);
 
 }  // namespace sketchsplat

@@ -118,15 +118,15 @@ OptimizeResult optimize(const Sketch& sketch, const EdgeWorld& world,
   if (options.steps <= 0 || sketch.size() == 0) return result;
   const int views = int(world.views.size());
   MatchOptions match;
-  const Observation o = observe(sketch, world, match, options.spacing_px, 1);
+  match.quadratics = false;
+  const Observation o = observe(sketch, world, match, options.spacing_px);
   result.splats = o.layout.size();
   const Eigen::MatrixXf visibility =
       options.visibility ? sample_visibility(o, views, options.gap) : Eigen::MatrixXf();
   const int strokes = sketch.size();
-  Drawing drawing{
-      sketch,
-      Eigen::VectorXd::Constant(strokes, kWidth * options.sigma_px * world.footprint),
-      Eigen::VectorXd::Constant(strokes, kDepth)};
+  Drawing drawing{sketch,
+                  Eigen::VectorXd::Constant(strokes, kWidth * options.sigma_px * world.footprint),
+                  Eigen::VectorXd::Constant(strokes, kDepth)};
   Eigen::VectorXd x = to_vector(sketch.nodes, sketch.handles, drawing.width.array().log(),
                                 drawing.depth.array().log());
   Eigen::VectorXd rate = Eigen::VectorXd::Constant(x.size(), options.step_px * world.footprint);

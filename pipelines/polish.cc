@@ -19,7 +19,7 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     const bool coarse = round < std::min(2, options.rounds / 2);
     match.reach_px = coarse ? options.reach_px : std::max(options.final_reach_px, 4 * sigma);
     match.max_bias = coarse ? 0 : std::max(options.bias_px, 2 * sigma);
-    Observation o = observe(s, world, match, options.spacing_px, 1);
+    Observation o = observe(s, world, match, options.spacing_px);
     sigma = o.matches.sigma_px;
     RefineSketchOptions refine;
     refine.smooth_angle = options.smooth_deg * M_PI / 180;

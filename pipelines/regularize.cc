@@ -21,7 +21,7 @@ double unknown_of(const StrokeStats& s, double floor_px) {
 }
 
 // The quadratics in squared standard deviations of the edgels.
-SampleQuadratics whitened(const Observation& seen, double floor_px, double footprint) {
+SampleQuadratics whitened(const StrokeObservation& seen, double floor_px, double footprint) {
   const Matches& q = seen.matches;
   SampleQuadratics out{q.information, q.slope};
   for (size_t i = 0; i < q.information.size(); ++i) {
@@ -57,7 +57,7 @@ SampleQuadratics moved_to(const Samples& to, const Samples& from, const SampleQu
 
 }  // namespace
 
-Regularized regularize(const Sketch& sketch, const Observation& seen, double footprint,
+Regularized regularize(const Sketch& sketch, const StrokeObservation& seen, double footprint,
                        const RegularizeOptions& options) {
   Regularized out;
   out.sketch = sketch;

@@ -37,7 +37,7 @@ struct Regularized {
 /// taken is imposed on the least squares of the edgels with small standard deviations, and kept if
 /// the whole is shorter indeed. `seen`: the sketch (or one a small move before it) held against the
 /// edgels; `footprint`: world length of a pixel.
-Regularized regularize(const Sketch& sketch, const Observation& seen, double footprint,
+Regularized regularize(const Sketch& sketch, const StrokeObservation& seen, double footprint,
                        const RegularizeOptions& options);
 
 }  // namespace sketchsplat

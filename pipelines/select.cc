@@ -17,7 +17,7 @@ namespace {
 constexpr double kSeldom = 0.25, kOutline = 0.9;
 
 // Width of sharp edges in these images: lower quartile over the well supported strokes' edgels.
-double sharp_width(const Observation& o, int min_views) {
+double sharp_width(const StrokeObservation& o, int min_views) {
   std::vector<std::pair<double, double>> widths;  // width, how many edgels say so
   double total = 0;
   for (const StrokeStats& s : o.strokes) {
@@ -33,7 +33,8 @@ double sharp_width(const Observation& o, int min_views) {
 }
 
 // Number of views in which edgels that nobody owns yet are a good part of a stroke.
-int claim(const Observation& o, int stroke, const EdgelFlags& owned, std::vector<int>* per_view) {
+int claim(const StrokeObservation& o, int stroke, const EdgelFlags& owned,
+          std::vector<int>* per_view) {
   int views = 0;
   std::fill(per_view->begin(), per_view->end(), 0);
   for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i)
@@ -95,7 +96,9 @@ double seen_share(const EdgeWorld& world, const Observation& o, int stroke, doub
         seen += matched[v];
       }
   }
-  const bool enough = sure >= min_sure * o.strokes[stroke].matches / kEvery;
+  const int matches =
+      o.matches.first[o.layout.first[stroke + 1]] - o.matches.first[o.layout.first[stroke]];
+  const bool enough = sure >= min_sure * matches / kEvery;
   return sure > 0 && enough ? double(seen) / sure : -1;
 }
 
@@ -137,12 +140,14 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   MatchOptions match;
   match.reach_px = 1.0;
   match.exclusive = false;
-  const Observation o = observe(sketch, world, match, 2.0, options.min_views);
+  match.quadratics = false;
+  const StrokeObservation o =
+      with_strokes(observe(sketch, world, match, 2.0), world, options.min_views);
   const double sharp = sharp_width(o, options.min_views);
   const double sigma = o.matches.sigma_px;
   MatchOptions lone = match;
   lone.min_run = 0;
-  const Observation every = observe(sketch, world, lone, 2.0, options.min_views);
+  const Observation every = observe(sketch, world, lone, 2.0);
   std::vector<double> seen(sketch.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < sketch.size(); ++i) seen[i] = seen_share(world, every, i, options.min_sure);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "datasets/errors.h"
 #include "edges/link.h"
@@ -295,7 +296,7 @@ void renumber(const std::vector<bool>& stays, std::vector<Regularity>* kept) {
 }
 
 // Fills in the confidence and drops what is less probable than wanted; says how many.
-int drop_unsure(const Observation& observation, const EdgeWorld& world, double least,
+int drop_unsure(const StrokeObservation& observation, const EdgeWorld& world, double least,
                 Sketch* sketch, std::vector<Regularity>* kept, RunReport* report) {
   const std::vector<StrokeFeatures> features = stroke_features(*sketch, world, observation);
   record_confidence(features, sketch);
@@ -321,8 +322,9 @@ int drop_unsure(const Observation& observation, const EdgeWorld& world, double l
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
-  const Closed closed =
-      options.close.on ? close_graph(sketch, world, prices(options), options.close) : Closed{sketch};
+  const Closed closed = options.close.on
+                            ? close_graph(sketch, world, prices(options), options.close)
+                            : Closed{sketch};
   Sketch out = closed.sketch;
   Regularized regular;
   if (options.final_polish) {
@@ -331,15 +333,17 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
     smooth.smooth_sigma_deg *= kSmoother;
     out = polish(closed.sketch, world, smooth, &last);
     if (options.regularize.on && last.layout.size() > 0) {
-      regular = regularize(out, last, world.footprint, regularize_options(options));
+      regular = regularize(out, with_strokes(std::move(last), world, 1), world.footprint,
+                           regularize_options(options));
       out = regular.sketch;
     }
   }
   smooth_joints(&out);
   MatchOptions match;
   match.reach_px = 1.0;
-  const Observation o =
-      observe(out, world, match, options.polish.spacing_px, options.select.min_views);
+  match.quadratics = false;
+  const StrokeObservation o = with_strokes(
+      observe(out, world, match, options.polish.spacing_px), world, options.select.min_views);
   record_evidence(o, world, match.reach_px, &out);
   const int unsure = drop_unsure(o, world, options.min_confidence, &out, &regular.kept, report);
   report->counts.push_back({"strokes", double(out.size())});

@@ -11,9 +11,9 @@ namespace sketchsplat {
 /// What descriptions cost. Every distance is a multiple of `footprint`, so a sketch in other units
 /// gives the same result.
 struct DescriptionCost {
-  double footprint = 0;    ///< world length of one pixel at the object; 0 merges only what coincides
-  double sigma_px = 0.2;   ///< standard deviation of what the images say of a place
-  double price = 3;        ///< [nat] of a parameter, see SegmentOptions
+  double footprint = 0;   ///< world length of one pixel at the object; 0 merges only what coincides
+  double sigma_px = 0.2;  ///< standard deviation of what the images say of a place
+  double price = 3;       ///< [nat] of a parameter, see SegmentOptions
   double node_price = 20;  ///< [nat] of a node: three times the logarithm of the places it may take
 };
 

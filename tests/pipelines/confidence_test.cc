@@ -31,7 +31,7 @@ Sketch line_circle_cubic() {
 void observed(const EdgeWorld& world, Sketch* sketch) {
   MatchOptions match;
   match.reach_px = 1;
-  record_evidence(observe(*sketch, world, match, 3, 4), world, match.reach_px, sketch);
+  record_evidence(with_strokes(observe(*sketch, world, match, 3), world, 4), world, match.reach_px, sketch);
 }
 
 // Moves every edgel along its normal by chance; the look-up by pixel stays right enough.
@@ -114,7 +114,7 @@ TEST(Confidence, IsHighOfWhatTheImagesShowAndLowOfWhatTheyDoNot) {
   add_line(&s, {0.2, 0.2, 0.8}, {0.5, 0.8, 0.8});
   MatchOptions match;
   match.reach_px = 1;
-  const Observation o = observe(s, world, match, 3, 4);
+  const StrokeObservation o = with_strokes(observe(s, world, match, 3), world, 4);
   record_evidence(o, world, 1, &s);
   record_confidence(stroke_features(s, world, o), &s);
   for (int i = 0; i < 3; ++i) EXPECT_GT(s.evidence[i].confidence, 0.9) << i;

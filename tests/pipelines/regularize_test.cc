@@ -48,7 +48,7 @@ Pair both(const Sketch& truth, const EdgeWorld& world) {
   Pair p;
   Observation last;
   p.free = polish(truth, world, {}, &last);
-  p.bound = regularize(p.free, last, world.footprint, {});
+  p.bound = regularize(p.free, with_strokes(last, world, 1), world.footprint, {});
   return p;
 }
 
@@ -197,7 +197,8 @@ TEST(Regularize, CubicsThatGoOnSmoothlyStillDoSo) {
   RegularizeOptions options;
   options.refine.smooth_angle = 0.1;
   options.refine.smooth_weight = std::pow(1 / (0.02 * M_PI / 180), 2);
-  const Regularized bound = regularize(free, last, world.footprint, options);
+  const Regularized bound =
+      regularize(free, with_strokes(last, world, 1), world.footprint, options);
   EXPECT_GT(bound.relations, 0);
   const std::vector<SmoothJoint> joints = find_smooth_joints(bound.sketch, 0.2);
   ASSERT_EQ(joints.size(), 1u);
@@ -272,20 +273,21 @@ TEST(Regularize, WorkHasABoundBeyondWhichKindsAreLeftOut) {
   const Sketch free = polish(truth, world, {}, &last);
   RegularizeOptions options;
   options.most_work = 0;
-  const Regularized none = regularize(free, last, world.footprint, options);
+  const Regularized none = regularize(free, with_strokes(last, world, 1), world.footprint, options);
   EXPECT_TRUE(none.kept.empty());
   EXPECT_EQ(none.sketch.nodes, free.nodes);
   size_t fewer = 0;
   for (options.most_work = 1e3; options.most_work < 1e7; options.most_work *= 2) {
-    const Regularized some = regularize(free, last, world.footprint, options);
+    const Regularized some =
+        regularize(free, with_strokes(last, world, 1), world.footprint, options);
     EXPECT_GE(some.kept.size(), fewer) << options.most_work;
     fewer = some.kept.size();
   }
-  EXPECT_EQ(fewer, regularize(free, last, world.footprint, {}).kept.size());
+  EXPECT_EQ(fewer, regularize(free, with_strokes(last, world, 1), world.footprint, {}).kept.size());
 }
 
 TEST(Regularize, NothingStaysNothing) {
-  const Regularized r = regularize(Sketch(), Observation(), 1, {});
+  const Regularized r = regularize(Sketch(), StrokeObservation(), 1, {});
   EXPECT_EQ(r.sketch.size(), 0);
   EXPECT_TRUE(r.kept.empty());
 }
