@@ -111,17 +111,6 @@ Prices prices(const ReconstructOptions& options) {
   return {options.segment.price, options.rechain.sigma_px};
 }
 
-SelectOptions select_options(const ReconstructOptions& options) {
-  SelectOptions select = options.select;
-  select.price = options.segment.price;
-  select.place_sigma_px = options.rechain.sigma_px;
-  // Surfels say less exactly than pictures where an edge is, and their detector has left out the
-  // contours of round surfaces: a stroke may stand off further in single views.
-  if (options.detector == "2dgs-sn")
-    select.max_bias_px = std::max(select.max_bias_px, options.surfel_bias_px);
-  return select;
-}
-
 RegularizeOptions regularize_options(const ReconstructOptions& options) {
   RegularizeOptions regularize = options.regularize;
   regularize.price = options.segment.price;
@@ -163,6 +152,17 @@ Round rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 }
 
 }  // namespace
+
+SelectOptions select_options(const ReconstructOptions& options) {
+  SelectOptions select = options.select;
+  select.price = options.segment.price;
+  select.place_sigma_px = options.rechain.sigma_px;
+  // Surfels say less exactly than pictures where an edge is, and their detector has left out the
+  // contours of round surfaces: a stroke may stand off further in single views.
+  if (options.detector == "2dgs-sn")
+    select.max_bias_px = std::max(select.max_bias_px, options.surfel_bias_px);
+  return select;
+}
 
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
                    const ReconstructOptions& options, RunReport* report, Progress* progress) {

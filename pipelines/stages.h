@@ -22,6 +22,10 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
                                   RunReport* report, Progress* progress);
 
+/// How strokes are chosen: at one price and by one least deviation for all that is described, and
+/// with the tolerance that edges of the detector need (--surfel-bias).
+SelectOptions select_options(const ReconstructOptions& options);
+
 /// Strokes from lifted points: linked to chains, cut into the simplest curves, moved onto the
 /// edgels, chosen by what they explain, and as long as the views see them.
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,

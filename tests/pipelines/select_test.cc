@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipelines/stages.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {
@@ -104,6 +105,26 @@ TEST(Select, OfTwoStrokesOnOneEdgeOneIsKept) {
   int next = 0;  // those that stay keep their order
   for (int i = 0; i < s.size(); ++i)
     EXPECT_EQ(out.remap.stroke[i], out.verdicts[i] == Verdict::kKept ? next++ : -1);
+}
+
+TEST(Select, AnEdgeMayStandOffInSingleViewsByWhatSurfelsAreAllowed) {
+  // Every view sees one edge of the cube a third of a pixel off, to one side or the other.
+  const Vector3d off(0, 0, kPixel / 3);
+  const EdgeWorld w = world_of(20, [&](int i, const View&) {
+    std::vector<Polyline> seen = polylines_of(cube());
+    for (Vector3d& p : seen[0]) p += i / 2 % 2 ? off : -off;
+    return seen;
+  });
+  const auto verdict = [&w](const char* detector, double surfel_bias_px) {
+    ReconstructOptions options;
+    options.detector = detector;
+    options.surfel_bias_px = surfel_bias_px;
+    return select_strokes(cube(), w, select_options(options)).verdicts[0];
+  };
+  const double usual = ReconstructOptions().surfel_bias_px;
+  EXPECT_EQ(verdict("image", usual), Verdict::kMoving);
+  EXPECT_EQ(verdict("2dgs-sn", usual), Verdict::kKept);
+  EXPECT_EQ(verdict("2dgs-sn", 0), Verdict::kMoving) << "--max-bias holds all the same";
 }
 
 TEST(Select, AStrokeThatTooFewViewsSeeIsUncovered) {
