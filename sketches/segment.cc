@@ -34,7 +34,7 @@ Family family_of(StrokeKind kind) {
          : kind == StrokeKind::kEllipticArc || kind == StrokeKind::kEllipse ? kOval
                                                                             : kPlain;
 }
-constexpr double kSwitch = 1;  // parameters that a change of the family is worth
+constexpr double kSwitch = 3;  // parameters that a change of the family is worth, and its place
 
 class Cutter {
  public:
