@@ -2,12 +2,14 @@
 #include "pipelines/round_arcs.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "sketches/conic.h"
 #include "sketches/curve.h"
 #include "sketches/ellipse_run.h"
+#include "sketches/fit.h"
 #include "topology/description.h"
 
 namespace sketchsplat {
@@ -44,28 +46,29 @@ class Rounder {
   int node_of(int stroke, bool at_end) const {
     return at_end ? s_.strokes[stroke].end : s_.strokes[stroke].begin;
   }
-  // Strokes a and b, which may be the same, become a closed one if that takes fewer words; `gap` is
-  // what it costs to go on between their loose ends.
-  bool replace(int a, int b, double gap, const PlainCurve& curve) {
+  // What it does to the description [nat] that strokes a and b, which may be the same, become a
+  // closed one; `gap` is what it costs to go on between their loose ends.
+  double growth(int a, int b, double gap, const PlainCurve& curve) const {
     const std::set<int> parts = {a, b};
-    const Matrix3Xd points = points_of(points_, parts);
-    double growth = gap + misfit(curve, points, cost_) + cost_.price * own_parameters(curve.kind);
+    double sum = gap + misfit(curve, points_of(points_, parts), cost_) +
+                 cost_.price * own_parameters(curve.kind);
     std::set<int> nodes;
     for (int i : parts) {
       const Stroke& s = s_.strokes[i];
-      growth -= misfit(plain_curve(s_, i), points_[i], cost_);
-      growth -= cost_.price * own_parameters(s.kind);
+      sum -= misfit(plain_curve(s_, i), points_[i], cost_);
+      sum -= cost_.price * own_parameters(s.kind);
       if (!is_closed(s.kind)) nodes.insert({s.begin, s.end});
     }
-    growth -= cost_.node_price * double(nodes.size());
-    if (!(growth < 0)) return false;
+    return sum - cost_.node_price * double(nodes.size());
+  }
+  void replace(int a, int b, const PlainCurve& curve) {
     alive_[a] = alive_[b] = false;
     alive_.push_back(true);
-    points_.push_back(points);
+    points_.push_back(points_of(points_, {a, b}));
     const std::vector<Vector3d> handles(curve.p.begin(), curve.p.begin() + curve.size());
     s_.add_stroke(curve.kind, -1, -1, handles, Evidence(s_.evidence[a]));
-    return true;
   }
+  double rest_cost(const PlainCurve& curve, const Matrix3Xd& points, double share) const;
   void round_ellipse(int a, bool a_back, int b, bool b_back);
 
   Sketch s_;
@@ -89,7 +92,10 @@ void Rounder::round_arcs() {
     const double t1 = 2 * M_PI / c.angle;
     const double cost =
         gap_cost(stroke.kind, control_points(s_, i), 1, t1, gap, world_, options_.gap);
-    rounded_ += replace(i, i, cost, circle_of_arc(plain_curve(s_, i)));
+    const PlainCurve circle = circle_of_arc(plain_curve(s_, i));
+    if (!(growth(i, i, cost, circle) < 0)) continue;
+    replace(i, i, circle);
+    ++rounded_;
   }
 }
 
@@ -132,18 +138,36 @@ void Rounder::round_ellipse(int a, bool a_back, int b, bool b_back) {
   const EllipseRun fit = ellipse_along(points);
   const double gap = 2 * M_PI - fit.sweep();
   if (!fit.ok || fit.sweep() < options_.least_turn * 2 * M_PI || gap < -0.2) return;
-  PlainCurve ellipse;
+  PlainCurve ellipse, circle;
   ellipse.kind = StrokeKind::kEllipse;
   ellipse.p = {fit.centre, fit.p, fit.q, Vector3d::Zero()};
-  double cost = 0;
-  if (gap > 0) {
-    ControlPoints rest;
-    rest.p = ellipse.p;
-    const double t0 = fit.angle[points.cols() - 1] / (2 * M_PI), t1 = t0 + gap / (2 * M_PI);
-    const double length = gap * 0.5 * (fit.p.norm() + fit.q.norm());  // about
-    cost = gap_cost(StrokeKind::kEllipse, rest, t0, t1, length, world_, options_.gap);
+  const CircleFit round = fit_circle(points);
+  circle.kind = StrokeKind::kCircle;
+  circle.p[0] = round.centre, circle.p[1] = round.radius * round.normal;
+  const double share = std::max(0.0, gap) / (2 * M_PI);
+  double least = 0;
+  PlainCurve best;
+  for (const PlainCurve& curve : {ellipse, circle}) {
+    if (!is_sound(curve)) continue;
+    const double here = growth(a, b, rest_cost(curve, points, share), curve);
+    if (here < least) least = here, best = curve;
   }
-  rounded_ += replace(a, b, cost, ellipse);
+  if (!(least < 0)) return;
+  replace(a, b, best);
+  ++rounded_;
+}
+
+// What it costs that a closed curve goes on over a `share` of it from the last of the points, which
+// run along it.
+double Rounder::rest_cost(const PlainCurve& curve, const Matrix3Xd& points, double share) const {
+  if (!(share > 0)) return 0;
+  const CurveSamples samples = sample_curve(curve);
+  const Closest last = closest_point(curve, samples, points.rightCols(1));
+  const Vector3d way = points.rightCols(1) - points.col(points.cols() - 2);
+  ControlPoints c;
+  std::copy_n(curve.p.begin(), c.count = curve.size(), c.p.begin());
+  const double end = last.t + (last.tangent.dot(way) > 0 ? share : -share);
+  return gap_cost(curve.kind, c, last.t, end, share * samples.length, world_, options_.gap);
 }
 
 // An ellipse that the images cannot tell from a circle is one.
@@ -157,7 +181,7 @@ void Rounder::ellipses_to_circles() {
     circle.kind = StrokeKind::kCircle;
     circle.p[0] = c.p[0];
     circle.p[1] = (a + b) / 2 * axes.major.cross(axes.minor).normalized();
-    replace(i, i, 0, circle);
+    if (growth(i, i, 0, circle) < 0) replace(i, i, circle);
   }
 }
 
