@@ -17,7 +17,10 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr double kStepPx = 0.5;    // along a loose end
+constexpr double kStepPx = 0.5;  // along a loose end
+// All places of a stroke err together: what it costs to move an end aside is bounded by this
+// standard deviation of the stroke as a whole [px].
+constexpr double kWholePx = 0.25;
 constexpr double kShortestPx = 5;  // strokes shorter than this have no direction to go on in
 
 // Cubics do not say how they go on, and short arcs of ellipses hardly.
@@ -90,6 +93,7 @@ class Graph {
   Meeting first_meeting(int stroke, bool at_end) const;
   void meet(int stroke, bool at_end, const Meeting& meeting);
   double added_cost(int stroke, const PlainCurve& longer) const;
+  double aside_cost(int stroke, bool at_end, const Vector3d& place) const;
   double growth(int stroke, const Meeting& meeting, const Graph& met) const;
   void move_end(int stroke, bool at_end, const Vector3d& place);
   int split(int stroke, double t);
@@ -285,6 +289,15 @@ double Graph::added_cost(int stroke, const PlainCurve& longer) const {
   return cost;
 }
 
+// What it costs at most that an end is there: how far that is from the way it goes on.
+double Graph::aside_cost(int stroke, bool at_end, const Vector3d& place) const {
+  Vector3d p, d;
+  evaluate_stroke(s_, stroke, at_end, &p, &d);
+  const Vector3d step = place - p, way = d.normalized();
+  const double aside = (step - step.dot(way) * way).norm() / px(kWholePx);
+  return aside * aside / 2;
+}
+
 // What it does to the description [nat] that the end of a stroke meets another one. A node on a
 // curve is one number where a loose end is three.
 double Graph::growth(int stroke, const Meeting& m, const Graph& met) const {
@@ -292,9 +305,14 @@ double Graph::growth(int stroke, const Meeting& m, const Graph& met) const {
   const bool split = met.s_.size() > s_.size();
   for (int i = split ? s_.size() : m.stroke; i < (split ? met.s_.size() : m.stroke + 1); ++i)
     curves.push_back(met.curve(i));
-  double sum = misfit(curves, points_of(points_, {stroke, m.stroke}), cost_) - misfit_of(stroke) -
-               misfit_of(m.stroke);
-
+  const double worse = misfit(curves, points_of(points_, {stroke, m.stroke}), cost_) -
+                       misfit_of(stroke) - misfit_of(m.stroke);
+  double moved = 0;
+  for (int i : {stroke, m.stroke})
+    for (bool at_end : {false, true})
+      if (!is_closed(s_.strokes[i].kind) && met.alive_[i])
+        moved += aside_cost(i, at_end, met.s_.nodes.col(met.node_of(i, at_end)));
+  double sum = std::min(worse, moved);
   sum += added_cost(stroke, curves[0]);
   if (!split && !is_closed(s_.strokes[m.stroke].kind)) sum += added_cost(m.stroke, curves[1]);
   const bool shared = !split && !is_closed(s_.strokes[m.stroke].kind);

@@ -13,7 +13,7 @@ namespace sketchsplat {
 struct CloseOptions {
   bool on = true;
   double reach_px = 8;    ///< [px] that a loose end goes on, or back, to meet another stroke
-  double aside_px = 1;    ///< [px] by which it may miss it
+  double aside_px = 2;    ///< [px] by which it may miss it
   double least_deg = 15;  ///< [deg] between strokes that meet: others run side by side
   double bridge_px = 3;   ///< [px] of the pieces of one line from it, over a gap
   RoundOptions round;     ///< of arcs that are all of their circle
