@@ -354,4 +354,17 @@ Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const Prices& p
   return closed;
 }
 
+int count_loose_ends(const Sketch& sketch, double reach) {
+  const std::vector<int> degree = node_degrees(sketch);
+  int count = 0;
+  for (int n = 0; n < sketch.nodes.cols(); ++n) {
+    bool held = degree[n] != 1;
+    for (int i = 0; i < sketch.size() && !held; ++i)
+      held = is_closed(sketch.strokes[i].kind) &&
+             distance_to_stroke(sketch, i, sketch.nodes.col(n)).distance <= reach;
+    count += !held;
+  }
+  return count;
+}
+
 }  // namespace sketchsplat

@@ -37,4 +37,7 @@ struct Closed {
 Closed close_graph(const Sketch& sketch, const EdgeWorld& world, const Prices& prices,
                    const CloseOptions& options);
 
+/// Ends where one stroke alone ends, farther than `reach` (world units) from every closed one.
+int count_loose_ends(const Sketch& sketch, double reach);
+
 }  // namespace sketchsplat

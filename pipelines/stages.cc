@@ -356,6 +356,7 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
     for (int& s : r.strokes) s = curve[s];
   for (int s = 0; s < out.size(); ++s) report->strokes[s].push_back({"curve", double(curve[s])});
   count_regularities(regular, report);
+  report->counts.push_back({"loose_ends", double(count_loose_ends(out, world.footprint))});
   report->counts.push_back({"unsure", double(unsure)});
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
   stage.result(std::to_string(out.size()) + " strokes");

@@ -182,6 +182,17 @@ TEST_F(CloseGraph, PiecesOfTwoLinesAreNotOne) {
   EXPECT_EQ(close(s).bridged, 0);
 }
 
+TEST_F(CloseGraph, EndsThatNothingElseHoldsAreCounted) {
+  Sketch s;
+  EXPECT_EQ(count_loose_ends(s, px), 0);
+  const int corner = s.add_node({0.5, 0.2, 0.5});
+  s.add_stroke(StrokeKind::kLine, s.add_node({0.2, 0.2, 0.5}), corner, {});
+  s.add_stroke(StrokeKind::kLine, corner, s.add_node({0.5, 0.6, 0.5}), {});
+  EXPECT_EQ(count_loose_ends(s, px), 2);
+  add_circle(&s, {0.5, 0.7, 0.5}, {0, 0, 0.1});  // the second line ends on it
+  EXPECT_EQ(count_loose_ends(s, px), 1);
+}
+
 TEST_F(CloseGraph, NothingMakesNothing) { EXPECT_EQ(close(Sketch()).sketch.size(), 0); }
 
 }  // namespace
