@@ -17,6 +17,7 @@ constexpr double kFirstLogit = 3.0;
 constexpr double kScale = 0.6;  // standard deviation of the first surfels, in their spacing
 constexpr double kMinAlpha = 0.05;
 constexpr int kNeighbours = 8;
+constexpr double kFew = 0.5;  // evenness of colours above which there is little print
 
 // Adam (Kingma and Ba, 2015) with a rate per row.
 struct Adam {
@@ -81,6 +82,7 @@ class Trainer {
       field_.drawing.lowpass_px = options_.lowpass_px / (1 << halvings);
       targets_ = make_targets(views_, std::max(16, options_.side_px >> halvings), bounds_.center());
       if (level == 0) color_from_views();
+      move_to_planes();
       run_level(std::max(1, int(share[level] * total)), total, level);
     }
     return field_;
@@ -144,6 +146,16 @@ class Trainer {
     } else {
       field_.surfels.values.bottomRows<3>() = color;
     }
+  }
+
+  // Correlation works on print; without it, shading and outlines are all that it can compare.
+  void move_to_planes() {
+    if (options_.moves.rounds == 0 || field_.evenness > kFew) return;
+    const std::vector<int> moved =
+        move_surfels(targets_, field_.drawing, field_.spacing, options_.moves, &field_.surfels);
+    field_.moved += int(moved.size());
+    if (adam_.m.size() == 0) return;
+    for (const int i : moved) adam_.m.col(i).setZero(), adam_.v.col(i).setZero();
   }
 
   Eigen::VectorXd rates(double progress) const {

@@ -83,9 +83,10 @@ class SurfelDetector : public Detector {
       report->counts.push_back({"surfel_loss", field_.losses.back()});
     }
     char text[160];
-    std::snprintf(text, sizeof text, "%d surfels of %d, %d split, %d merged, %d pruned, loss %.4f",
+    std::snprintf(text, sizeof text,
+                  "%d surfels of %d, %d split, %d merged, %d pruned, %d moved, loss %.4f",
                   field_.surfels.size(), field_.first_count, field_.split, field_.merged,
-                  field_.pruned, field_.losses.back());
+                  field_.pruned, field_.moved, field_.losses.back());
     stage.result(text);
   }
 

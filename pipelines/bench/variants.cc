@@ -53,6 +53,7 @@ std::vector<BenchVariant> ablation_variants_of(const std::vector<std::string>& d
       {"clone and split", {{"surfel-density", "clone-split"}}},
       {"fixed number of surfels", {{"surfel-density", "fixed"}}},
       {"without merging", {{"surfel-merge", "false"}}},
+      {"without moves", {{"surfel-moves", "0"}}},
       {"without smoothness", {{"surfel-smoothness", "0"}}},
       {"without carving", {{"surfel-carving", "0"}}},
       {"normals blended", {{"surfel-mode", "0"}}},
