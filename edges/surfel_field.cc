@@ -85,6 +85,7 @@ class Trainer {
       move_to_planes();
       run_level(std::max(1, int(share[level] * total)), total, level);
     }
+    field_.flat = flatten_surfels(field_.spacing, options_.planes, &field_.surfels);
     return field_;
   }
 

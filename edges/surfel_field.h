@@ -10,6 +10,7 @@
 #include "edges/photo_hull.h"
 #include "edges/surfel_loss.h"
 #include "edges/surfel_moves.h"
+#include "edges/surfel_planes.h"
 #include "edges/surfel_set.h"
 #include "edges/surfel_shading.h"
 
@@ -37,7 +38,8 @@ struct SurfelFieldOptions {
   double mode_deg = 25;        ///< [deg] of what is one surface at a pixel, see render_geometry
   SurfelLossOptions loss;
   PhotoHullOptions hull;
-  MoveOptions moves;  ///< before each level, where there is print
+  MoveOptions moves;    ///< before each level, where there is print
+  PlaneOptions planes;  ///< at the end
 };
 
 /// Surfels that look like the pictures.
@@ -48,7 +50,7 @@ struct SurfelField {
   SurfelOptions drawing;
   double spacing = 0;      ///< of the first surfels, world units
   std::vector<double> losses;  ///< mean of each tenth of the steps
-  int first_count = 0, split = 0, merged = 0, pruned = 0, moved = 0, renderings = 0;
+  int first_count = 0, split = 0, merged = 0, pruned = 0, moved = 0, flat = 0, renderings = 0;
   SurfelCloud cloud() const;  ///< with the colours that are drawn
 };
 

@@ -82,11 +82,12 @@ class SurfelDetector : public Detector {
       report->counts.push_back({"surfel_renderings", double(field_.renderings)});
       report->counts.push_back({"surfel_loss", field_.losses.back()});
     }
-    char text[160];
+    char text[200];
     std::snprintf(text, sizeof text,
-                  "%d surfels of %d, %d split, %d merged, %d pruned, %d moved, loss %.4f",
+                  "%d surfels of %d, %d split, %d merged, %d pruned, %d moved, %d on planes, "
+                  "loss %.4f",
                   field_.surfels.size(), field_.first_count, field_.split, field_.merged,
-                  field_.pruned, field_.moved, field_.losses.back());
+                  field_.pruned, field_.moved, field_.flat, field_.losses.back());
     stage.result(text);
   }
 
