@@ -17,7 +17,6 @@ constexpr double kFirstLogit = 3.0;
 constexpr double kScale = 0.6;  // standard deviation of the first surfels, in their spacing
 constexpr double kMinAlpha = 0.05;
 constexpr int kNeighbours = 8;
-constexpr double kFew = 0.5;  // evenness of colours above which there is little print
 
 // Adam (Kingma and Ba, 2015) with a rate per row.
 struct Adam {
@@ -151,7 +150,7 @@ class Trainer {
 
   // Correlation works on print; without it, shading and outlines are all that it can compare.
   void move_to_planes() {
-    if (options_.moves.rounds == 0 || field_.evenness > kFew) return;
+    if (options_.moves.rounds == 0 || field_.evenness > kEven) return;
     const std::vector<int> moved =
         move_surfels(targets_, field_.drawing, field_.spacing, options_.moves, &field_.surfels);
     field_.moved += int(moved.size());

@@ -42,6 +42,9 @@ struct SurfelFieldOptions {
   PlaneOptions planes;  ///< at the end
 };
 
+/// Evenness of colours, see SurfelField, above which little can be print.
+constexpr double kEven = 0.5;
+
 /// Surfels that look like the pictures.
 struct SurfelField {
   SurfelSet surfels;
@@ -55,11 +58,11 @@ struct SurfelField {
 };
 
 /// Fits surfels (2D Gaussian splatting, Huang et al., SIGGRAPH 2024) to views of one object, coarse
-/// to fine: starts on the photo hull, which `sights` help to
-/// carve, Adam on mini-batches in a fixed order, density control, stops
-/// when the loss does. `views` at side_px or above; `bounds` hold the object. `step`, if given, is
-/// called after every rendering. The same bytes for any number of threads. Precondition: at least
-/// one view. No surfels if the hull is empty.
+/// to fine: starts on the photo hull, which `sights` help to carve; per level, moves to planes of
+/// neighbours where there is print, then Adam on mini-batches in a fixed order and density control
+/// until the loss stops; at last what makes a plane is laid on it. `views` at side_px or above;
+/// `bounds` hold the object. `step`, if given, is called after every rendering. The same bytes for
+/// any number of threads. Precondition: at least one view. No surfels if the hull is empty.
 SurfelField train_surfels(const std::vector<TrainingView>& views,
                           const Eigen::AlignedBox3d& bounds, const SurfelFieldOptions& options,
                           const std::vector<SightLine>& sights = {},

@@ -125,7 +125,6 @@ class Regions {
     const Vector3d u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
     Matrix3d A = Matrix3d::Zero();
     Eigen::Matrix<double, 3, 2> B = Eigen::Matrix<double, 3, 2>::Zero();
-    std::vector<Vector3d> basis;
     for (const int i : region) {
       const Vector3d d = center_.col(i) - plane.middle;
       const Vector3d b(1, d.dot(u), d.dot(v));

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kAlongDeg = 30;  // largest turn between an edge of the picture and of the geometry
 constexpr int kFewestViews = 3;
-constexpr double kEven = 0.5;     // evenness of colours above which little can be print
 constexpr int kFewestPoints = 2;  // of a track that is judged
 constexpr int kEvery = 2;         // points of a track of which one is looked at
 constexpr int kAlong = 6;         // edgels to the next one
