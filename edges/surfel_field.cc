@@ -84,7 +84,7 @@ class Trainer {
       move_to_planes();
       run_level(std::max(1, int(share[level] * total)), total, level);
     }
-    field_.flat = flatten_surfels(field_.spacing, options_.planes, &field_.surfels);
+    lay_on_shapes();
     return field_;
   }
 
@@ -147,7 +147,6 @@ class Trainer {
       field_.surfels.values.bottomRows<3>() = color;
     }
   }
-
   // Correlation works on print; without it, shading and outlines are all that it can compare.
   void move_to_planes() {
     if (options_.moves.rounds == 0 || field_.evenness > kEven) return;
@@ -156,6 +155,13 @@ class Trainer {
     field_.moved += int(moved.size());
     if (adam_.m.size() == 0) return;
     for (const int i : moved) adam_.m.col(i).setZero(), adam_.v.col(i).setZero();
+  }
+
+  void lay_on_shapes() {
+    const std::vector<char> flat =
+        flatten_surfels(field_.spacing, options_.planes, &field_.surfels);
+    field_.flat = int(std::count(flat.begin(), flat.end(), 1));
+    field_.round = round_surfels(field_.spacing, options_.cylinders, flat, &field_.surfels);
   }
 
   Eigen::VectorXd rates(double progress) const {

@@ -8,6 +8,7 @@
 
 #include "datasets/geometry_maps.h"
 #include "edges/photo_hull.h"
+#include "edges/surfel_cylinders.h"
 #include "edges/surfel_loss.h"
 #include "edges/surfel_moves.h"
 #include "edges/surfel_planes.h"
@@ -38,8 +39,9 @@ struct SurfelFieldOptions {
   double mode_deg = 25;        ///< [deg] of what is one surface at a pixel, see render_geometry
   SurfelLossOptions loss;
   PhotoHullOptions hull;
-  MoveOptions moves;    ///< before each level, where there is print
-  PlaneOptions planes;  ///< at the end
+  MoveOptions moves;          ///< before each level, where there is print
+  PlaneOptions planes;        ///< at the end
+  CylinderOptions cylinders;  ///< at the end, of what makes no plane
 };
 
 /// Evenness of colours, see SurfelField, above which little can be print.
@@ -53,16 +55,18 @@ struct SurfelField {
   SurfelOptions drawing;
   double spacing = 0;      ///< of the first surfels, world units
   std::vector<double> losses;  ///< mean of each tenth of the steps
-  int first_count = 0, split = 0, merged = 0, pruned = 0, moved = 0, flat = 0, renderings = 0;
+  int first_count = 0, split = 0, merged = 0, pruned = 0, moved = 0, flat = 0, round = 0;
+  int renderings = 0;
   SurfelCloud cloud() const;  ///< with the colours that are drawn
 };
 
 /// Fits surfels (2D Gaussian splatting, Huang et al., SIGGRAPH 2024) to views of one object, coarse
 /// to fine: starts on the photo hull, which `sights` help to carve; per level, moves to planes of
 /// neighbours where there is print, then Adam on mini-batches in a fixed order and density control
-/// until the loss stops; at last what makes a plane is laid on it. `views` at side_px or above;
-/// `bounds` hold the object. `step`, if given, is called after every rendering. The same bytes for
-/// any number of threads. Precondition: at least one view. No surfels if the hull is empty.
+/// until the loss stops; at last what makes a plane or a cylinder is laid on it. `views` at side_px
+/// or above; `bounds` hold the object. `step`, if given, is called after every rendering. The same
+/// bytes for any number of threads. Precondition: at least one view. No surfels if the hull is
+/// empty.
 SurfelField train_surfels(const std::vector<TrainingView>& views,
                           const Eigen::AlignedBox3d& bounds, const SurfelFieldOptions& options,
                           const std::vector<SightLine>& sights = {},

@@ -230,8 +230,7 @@ bool best_plane(const Judge& judge, int home, const Plane& own, const std::vecto
 }
 
 Plane plane_of(const SurfelSet& set, int i) {
-  return {set.values.col(i).segment<3>(SurfelSet::kCenter),
-          surfel_normal(set.values.col(i).segment<4>(SurfelSet::kRotation))};
+  return {set.center(i), set.normal(i)};
 }
 
 }  // namespace

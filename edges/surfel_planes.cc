@@ -8,8 +8,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "edges/surfel_shading.h"
-
 namespace sketchsplat {
 namespace {
 
@@ -35,8 +33,7 @@ class Regions {
         center_(set.values.middleRows<3>(SurfelSet::kCenter)) {
     const int n = set.size();
     normal_.resize(3, n);
-    for (int i = 0; i < n; ++i)
-      normal_.col(i) = surfel_normal(set.values.col(i).segment<4>(SurfelSet::kRotation));
+    for (int i = 0; i < n; ++i) normal_.col(i) = set.normal(i);
     near_.resize(n);
     for (const auto& [i, j] : neighbour_pairs(set, kNeighbours, kNear * spacing, kNearAngle))
       near_[i].push_back(j), near_[j].push_back(i);
@@ -158,25 +155,19 @@ class Regions {
 
 }  // namespace
 
-int flatten_surfels(double spacing, const PlaneOptions& options, SurfelSet* set) {
-  if (set->size() == 0 || options.fewest <= 0) return 0;
+std::vector<char> flatten_surfels(double spacing, const PlaneOptions& options, SurfelSet* set) {
+  std::vector<char> flat(set->size(), 0);
+  if (set->size() == 0 || options.fewest <= 0) return flat;
   Regions regions(spacing, options, *set);
-  int count = 0;
   for (const int seed : regions.seeds()) {
     Plane plane;
     for (const int i : regions.grow(seed, &plane)) {
-      auto center = set->values.col(i).segment<3>(SurfelSet::kCenter);
-      center -= plane.normal.dot(center - plane.middle) * plane.normal;
-      // The shortest turn: scales keep their axes.
-      const Eigen::Vector4d q = set->values.col(i).segment<4>(SurfelSet::kRotation);
-      const Eigen::Quaterniond turn =
-          Eigen::Quaterniond::FromTwoVectors(surfel_normal(q), plane.normal);
-      const Eigen::Quaterniond now = turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-      set->values.col(i).segment<4>(SurfelSet::kRotation) << now.w(), now.x(), now.y(), now.z();
-      ++count;
+      const Vector3d center = set->center(i);
+      set->lay(i, center - plane.normal.dot(center - plane.middle) * plane.normal, plane.normal);
+      flat[i] = 1;
     }
   }
-  return count;
+  return flat;
 }
 
 }  // namespace sketchsplat

@@ -2,6 +2,7 @@
 #include "edges/surfel_set.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -111,6 +112,18 @@ bool is_faint(const SurfelSet& set, int i, const Eigen::VectorXd& weight, double
 
 }  // namespace
 
+Eigen::Vector3d SurfelSet::normal(int i) const {
+  return surfel_normal(values.col(i).segment<4>(kRotation));
+}
+
+void SurfelSet::lay(int i, const Eigen::Vector3d& center, const Eigen::Vector3d& normal) {
+  const Eigen::Vector4d q = values.col(i).segment<4>(kRotation);
+  const Eigen::Quaterniond now = Eigen::Quaterniond::FromTwoVectors(this->normal(i), normal) *
+                                 Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  values.col(i).segment<3>(kCenter) = center;
+  values.col(i).segment<4>(kRotation) << now.w(), now.x(), now.y(), now.z();
+}
+
 SurfelCloud SurfelSet::cloud(const Eigen::Matrix3Xd& color) const {
   SurfelCloud c;
   c.center = values.middleRows<3>(kCenter);
@@ -211,7 +224,7 @@ std::vector<std::pair<int, int>> neighbour_pairs(const SurfelSet& set, int count
   if (n == 0) return {};
   Eigen::Matrix3Xd normal(3, n);
   for (int i = 0; i < n; ++i)
-    normal.col(i) = surfel_normal(set.values.col(i).segment<4>(SurfelSet::kRotation));
+    normal.col(i) = set.normal(i);
   const Eigen::Matrix3Xd p = set.values.middleRows<3>(SurfelSet::kCenter);
   const double least = std::cos(max_angle_deg * M_PI / 180);
   const Bins bins(p, reach);

@@ -17,6 +17,10 @@ struct SurfelSet {
   Eigen::MatrixXd values;  ///< kRows x N; fields as in SurfelCloud, then the albedo
 
   int size() const { return int(values.cols()); }
+  Eigen::Vector3d center(int i) const { return values.col(i).segment<3>(kCenter); }
+  Eigen::Vector3d normal(int i) const;
+  /// Puts surfel i there. Its normal takes the shortest turn, so that scales keep their axes.
+  void lay(int i, const Eigen::Vector3d& center, const Eigen::Vector3d& normal);
   Eigen::Matrix3Xd albedo() const { return values.middleRows<3>(kAlbedo); }
   /// The surfels with these colours (3 x N).
   SurfelCloud cloud(const Eigen::Matrix3Xd& color) const;

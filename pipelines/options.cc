@@ -167,6 +167,8 @@ void list_surfels(DetectionOptions* all, Fields* f) {
          "Of surfels to planes on which views agree better, before each level");
   f->add("surfel-planes", &o->planes.fewest, "surfels", 0, 1e6,
          "That make a plane and are laid on it at the end; 0 looks for none");
+  f->add("surfel-cylinders", &o->cylinders.fewest, "surfels", 0, 1e6,
+         "The same of cylinders");
   f->add("surfel-mode", &o->mode_deg, "deg", 0, 90,
          "Turn of what is one surface at a pixel; 0 blends all surfels");
   f->add("surfel-shading-pull", &o->shading_pull, "", 0, 1,

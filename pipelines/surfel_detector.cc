@@ -83,10 +83,10 @@ class SurfelDetector : public Detector {
     }
     char text[200];
     std::snprintf(text, sizeof text,
-                  "%d surfels of %d, %d split, %d merged, %d pruned, %d moved, %d on planes, "
-                  "loss %.4f",
+                  "%d surfels of %d, %d split, %d merged, %d pruned, %d moved, "
+                  "%d on planes, %d on cylinders, loss %.4f",
                   field_.surfels.size(), field_.first_count, field_.split, field_.merged,
-                  field_.pruned, field_.moved, field_.flat, field_.losses.back());
+                  field_.pruned, field_.moved, field_.flat, field_.round, field_.losses.back());
     stage.result(text);
   }
 

@@ -55,6 +55,7 @@ std::vector<BenchVariant> ablation_variants_of(const std::vector<std::string>& d
       {"without merging", {{"surfel-merge", "false"}}},
       {"without moves", {{"surfel-moves", "0"}}},
       {"without planes", {{"surfel-planes", "0"}}},
+      {"without cylinders", {{"surfel-cylinders", "0"}}},
       {"without smoothness", {{"surfel-smoothness", "0"}}},
       {"without carving", {{"surfel-carving", "0"}}},
       {"normals blended", {{"surfel-mode", "0"}}},
