@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <numeric>
 
 #include "edges/surfel_smooth.h"
 #include "edges/surfel_target.h"
@@ -74,21 +75,36 @@ class Trainer {
     if (field_.surfels.size() == 0) return field_;
     const int total = std::max(1, options_.renderings / options_.batch);
     const double share[3] = {0.3, 0.35, 0.35};
+    const int side = field_.side_px = enough_side();
     for (int level = 0; level < 3; ++level) {
       // The same smallest footprint in space at all levels: a wider one would bulge over the
       // outline, and surfaces sink to make up for it.
       const int halvings = std::max(0, options_.halvings - level);
-      field_.drawing.lowpass_px = options_.lowpass_px / (1 << halvings);
-      targets_ = make_targets(views_, std::max(16, options_.side_px >> halvings), bounds_.center());
+      field_.drawing.lowpass_px =
+          options_.lowpass_px * side / options_.side_px / (1 << halvings);
+      targets_ = make_targets(views_, std::max(16, side >> halvings), bounds_.center());
       if (level == 0) color_from_views();
       move_to_planes();
       run_level(std::max(1, int(share[level] * total)), total, level);
     }
+    field_.drawing.lowpass_px = options_.lowpass_px;
     lay_on_shapes();
     return field_;
   }
 
  private:
+  // [px] longer side at which the object has no more pixels than surfels need.
+  int enough_side() const {
+    double pixels = 0;
+    for (const TrainingView& v : views_) {
+      const double scale = double(options_.side_px) / std::max(v.alpha.width, v.alpha.height);
+      const double sum = std::accumulate(v.alpha.data.begin(), v.alpha.data.end(), 0.0);
+      pixels += std::min(1.0, scale * scale) * sum / views_.size();
+    }
+    if (pixels <= options_.pixels) return options_.side_px;
+    return std::max(1, int(options_.side_px * std::sqrt(options_.pixels / pixels)));
+  }
+
   void seed() {
     const SurfaceSamples samples =
         photo_hull_surface(views_, bounds_, options_.surfels, options_.hull, sights_);

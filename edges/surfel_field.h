@@ -28,6 +28,7 @@ struct SurfelFieldOptions {
   int most_surfels = 8000;  ///< ever
   int renderings = 1200;    ///< of a view, forward and backward, at the most
   int side_px = 800;        ///< [px] longer side of the pictures at the end; a quarter of it first
+  int pixels = 80000;       ///< of the object in a picture, mean: larger pictures are made smaller
   int halvings = 1;         ///< of that side, in [0, 2], at the start
   double lowpass_px = 0.35;  ///< see SurfelOptions; a wider one swells outlines, so that faces sink
   int batch = 2;            ///< views per step
@@ -57,6 +58,7 @@ struct SurfelField {
   std::vector<double> losses;  ///< mean of each tenth of the steps
   int first_count = 0, split = 0, merged = 0, pruned = 0, moved = 0, flat = 0, round = 0;
   int renderings = 0;
+  int side_px = 0;  ///< longer side of the largest pictures it was fitted to
   SurfelCloud cloud() const;  ///< with the colours that are drawn
 };
 

@@ -144,6 +144,8 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfel-side", &o->side_px, "px", 64, 4096,
          "Longer side of the pictures they are fitted to");
   f->add("surfel-batch", &o->batch, "views", 1, 64, "Drawn for one step");
+  f->add("surfel-pixels", &o->pixels, "px", 1000, 1e8,
+         "Of the object in a picture, mean; where it has more, pictures are made smaller");
   f->add("surfel-halvings", &o->halvings, "", 0, 2, "Of that side at the start");
   f->add("surfel-lowpass", &o->lowpass_px, "px", 0.1, 2,
          "Smallest standard deviation of a drawn surfel");

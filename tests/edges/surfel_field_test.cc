@@ -253,6 +253,47 @@ TEST(SurfelMaps, KeepCreasesThatABlendWouldRound) {
   EXPECT_GT(worst(0), 15);
 }
 
+// A ball of unit radius from six sides, grey, of about 1300 pixels.
+std::vector<TrainingView> ball() {
+  constexpr int kSize = 64;
+  std::vector<TrainingView> views(6);
+  for (int k = 0; k < 6; ++k) {
+    View& v = views[k].view;
+    v.camera = {kSize, kSize, 64, 64, 31.5, 31.5};
+    const Eigen::Vector3d forward = (k % 2 ? 1 : -1) * Eigen::Vector3d::Unit(k / 2);
+    const Eigen::Vector3d right = Eigen::Vector3d::Unit((k / 2 + 1) % 3);
+    v.cam_from_world.rotation.row(0) = right;
+    v.cam_from_world.rotation.row(1) = forward.cross(right);
+    v.cam_from_world.rotation.row(2) = forward;
+    v.cam_from_world.translation = {0, 0, 3.2};
+    views[k].alpha = Image<float>(kSize, kSize);
+    for (int i = 0; i < kSize * kSize; ++i)
+      views[k].alpha.data[i] = std::hypot(i % kSize - 31.5, i / kSize - 31.5) < 20.5;
+    for (Image<float>& c : views[k].color) {
+      c = views[k].alpha;
+      for (float& x : c.data) x *= 0.5f;
+    }
+  }
+  return views;
+}
+
+TEST(SurfelField, PicturesOfLargeObjectsAreMadeSmallerAndSmallOnesAreNot) {
+  const Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-1.1), Eigen::Vector3d::Constant(1.1));
+  SurfelFieldOptions options;
+  options.surfels = 200, options.renderings = 6, options.side_px = 64;
+  const SurfelField whole = train_surfels(ball(), box, options);
+  ASSERT_GT(whole.surfels.size(), 50);
+  EXPECT_EQ(whole.side_px, 64);
+  options.pixels = 330;  // a quarter
+  const SurfelField less = train_surfels(ball(), box, options);
+  EXPECT_NEAR(less.side_px, 32, 1);
+  EXPECT_EQ(less.drawing.lowpass_px, whole.drawing.lowpass_px);  // of a view, not of the fit
+  double off = 0;
+  for (int i = 0; i < less.surfels.size(); ++i)
+    off += std::abs(less.surfels.center(i).norm() - 1) / less.surfels.size();
+  EXPECT_LT(off, 0.1);
+}
+
 TEST(SurfelPly, HoldsARowOfSixteenNumbersPerSurfel) {
   const std::string ply = surfel_ply(two_planes());
   EXPECT_NE(ply.find("element vertex 144\n"), std::string::npos);
