@@ -7,12 +7,16 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "edges/edge_planes.h"
+#include "edges/plane_carving.h"
+
 namespace sketchsplat {
 namespace {
 
 constexpr double kCellPx = 2;            // [px] of a cell in the pictures that are compared, about
 constexpr int kFewestViews = 4;          // that may condemn a cell
 constexpr double kMostUncovered = 0.01;  // share of the masks that carving may lay bare
+constexpr double kMostPierced = 0.002;   // the same of carving by lines of sight
 
 // What a view says about cells.
 struct Witness {
@@ -67,31 +71,9 @@ Witness make_witness(const TrainingView& full, double cell, const Eigen::Vector3
   return w;
 }
 
-struct Grid {
-  Eigen::Vector3d low;
-  double cell = 0;
-  int nx = 0, ny = 0, nz = 0;
-  std::vector<float> field;  // > 0 inside, in cells, about the distance to the surface
-
-  int size() const { return nx * ny * nz; }
-  int index(int i, int j, int k) const { return (k * ny + j) * nx + i; }
-  Eigen::Vector3d center(int c) const {
-    return low + cell * Eigen::Vector3d(c % nx + .5, c / nx % ny + .5, c / (nx * ny) + .5);
-  }
-  bool inside(int i, int j, int k) const {
-    return i >= 0 && j >= 0 && k >= 0 && i < nx && j < ny && k < nz && field[index(i, j, k)] > 0;
-  }
-  bool on_surface(int c) const {
-    if (!(field[c] > 0)) return false;
-    const int i = c % nx, j = c / nx % ny, k = c / (nx * ny);
-    return !inside(i - 1, j, k) || !inside(i + 1, j, k) || !inside(i, j - 1, k) ||
-           !inside(i, j + 1, k) || !inside(i, j, k - 1) || !inside(i, j, k + 1);
-  }
-};
-
-Grid visual_hull(const std::vector<Witness>& witnesses, const Eigen::AlignedBox3d& bounds,
-                 int cells) {
-  Grid g;
+CellGrid visual_hull(const std::vector<Witness>& witnesses, const Eigen::AlignedBox3d& bounds,
+                     int cells) {
+  CellGrid g;
   g.cell = bounds.sizes().maxCoeff() / cells;
   g.low = bounds.min() - Eigen::Vector3d::Constant(2 * g.cell);
   const Eigen::Vector3d n = (bounds.sizes() / g.cell).array().ceil() + 4;
@@ -118,39 +100,7 @@ Grid visual_hull(const std::vector<Witness>& witnesses, const Eigen::AlignedBox3
   return g;
 }
 
-// Takes away what stands in lines of sight. The last cells before a point stay: they may hold it.
-int carve_sights(const std::vector<SightLine>& sights, double least, Grid* g) {
-  constexpr double kStep = 0.5, kLast = 2;  // [cells]
-  std::vector<int> count(g->size(), 0);
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < int(sights.size()); ++k) {
-    const Eigen::Vector3d eye = (sights[k].eye - g->low) / g->cell;
-    const Eigen::Vector3d way = (sights[k].point - g->low) / g->cell - eye;
-    const double length = way.norm(), radius = Eigen::Vector3d(g->nx, g->ny, g->nz).norm();
-    int before = -1;
-    for (double s = length - kLast; s > std::max(0.0, length - radius); s -= kStep) {
-      const Eigen::Vector3i q = (eye + s / length * way).array().floor().cast<int>();
-      if (!g->inside(q.x(), q.y(), q.z())) continue;
-      const int c = g->index(q.x(), q.y(), q.z());
-      if (c == before) continue;
-      before = c;
-#pragma omp atomic
-      ++count[c];
-    }
-  }
-  // Lines are thin: those of a neighbourhood count together.
-  const int stride[3] = {1, g->nx, g->nx * g->ny};
-  for (const int s : stride) {
-    const std::vector<int> single = count;
-    for (int c = s; c + s < g->size(); ++c) count[c] = single[c - s] + single[c] + single[c + s];
-  }
-  int carved = 0;
-  for (int c = 0; c < g->size(); ++c)
-    if (count[c] >= 27 * least && g->field[c] > 0) g->field[c] = -1, ++carved;
-  return carved;
-}
-
-void draw_depth(const Grid& g, const std::vector<int>& surface, Witness* w) {
+void draw_depth(const CellGrid& g, const std::vector<int>& surface, Witness* w) {
   w->depth = cv::Mat1f(w->inside.size(), std::numeric_limits<float>::max());
   for (const int c : surface) {
     int x, y;
@@ -182,19 +132,20 @@ bool consistent(const Eigen::Vector3d& p, const std::vector<Witness>& witnesses,
   return most >= options.agree * seen;
 }
 
-std::vector<int> surface_of(const Grid& g) {
+std::vector<int> surface_of(const CellGrid& g) {
   std::vector<int> surface;
   for (int c = 0; c < g.size(); ++c)
     if (g.on_surface(c)) surface.push_back(c);
   return surface;
 }
 
-void draw_depths(const Grid& g, const std::vector<int>& surface, std::vector<Witness>* witnesses) {
+void draw_depths(const CellGrid& g, const std::vector<int>& surface,
+                 std::vector<Witness>* witnesses) {
 #pragma omp parallel for schedule(dynamic, 1)
   for (int w = 0; w < int(witnesses->size()); ++w) draw_depth(g, surface, &(*witnesses)[w]);
 }
 
-int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, Grid* g) {
+int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, CellGrid* g) {
   int carved = 0;
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
     const std::vector<int> surface = surface_of(*g);
@@ -213,7 +164,7 @@ int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, Grid
 }
 
 // Share of the masks, without their rims, where no cell is.
-double uncovered(const Grid& g, std::vector<Witness>* witnesses) {
+double uncovered(const CellGrid& g, std::vector<Witness>* witnesses) {
   draw_depths(g, surface_of(g), witnesses);
   double bare = 0, all = 0;
   for (const Witness& w : *witnesses) {
@@ -224,8 +175,23 @@ double uncovered(const Grid& g, std::vector<Witness>* witnesses) {
   return all > 0 ? bare / all : 0;
 }
 
+// The more lines are wrong, the larger the share of a region's cells that they must cross.
+int carve_sights(const SureEdges& sure, double share, std::vector<Witness>* witnesses,
+                 CellGrid* grid) {
+  if (share <= 0 || sure.lines.empty()) return 0;
+  const CellGrid hull = *grid;
+  const double bare = uncovered(hull, witnesses);
+  const PlaneCarving carving(sure, edge_planes(sure), hull);
+  for (int times = 1; times * share < 1; ++times) {
+    const int carved = carving.carve(times * share, grid);
+    if (uncovered(*grid, witnesses) <= bare + kMostPierced) return carved;
+  }
+  *grid = hull;
+  return 0;
+}
+
 // Cells are steps; a surface is not.
-void smooth(Grid* g) {
+void smooth(CellGrid* g) {
   const float kernel[3] = {0.25f, 0.5f, 0.25f};
   const int stride[3] = {1, g->nx, g->nx * g->ny};
   for (int pass = 0; pass < 2; ++pass)
@@ -244,7 +210,7 @@ struct Crossing {
 
 // Where the field changes its sign along the grid's lines, and the area of the surface (each axis
 // counts the surface's shadow along it).
-std::vector<Crossing> crossings(const Grid& g, double* area) {
+std::vector<Crossing> crossings(const CellGrid& g, double* area) {
   const int stride[3] = {1, g.nx, g.nx * g.ny};
   const auto gradient = [&](int c) {
     Eigen::Vector3d d;
@@ -302,8 +268,7 @@ std::vector<Crossing> thinned(std::vector<Crossing> all, const Eigen::AlignedBox
 
 SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
                                   const Eigen::AlignedBox3d& bounds, int count,
-                                  const PhotoHullOptions& options,
-                                  const std::vector<SightLine>& sights) {
+                                  const PhotoHullOptions& options, const SureEdges& sure) {
   SurfaceSamples samples;
   if (views.empty() || bounds.isEmpty() || !(bounds.sizes().maxCoeff() > 0)) return samples;
   const double cell = bounds.sizes().maxCoeff() / options.cells;
@@ -311,13 +276,13 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
 #pragma omp parallel for schedule(dynamic, 1)
   for (int v = 0; v < int(views.size()); ++v)
     witnesses[v] = make_witness(views[v], cell, bounds.center());
-  Grid grid = visual_hull(witnesses, bounds, options.cells);
-  const Grid whole = grid;
-  if (options.sights > 0) samples.carved += carve_sights(sights, options.sights, &grid);
-  samples.carved += carve(options, &witnesses, &grid);
+  CellGrid grid = visual_hull(witnesses, bounds, options.cells);
+  carve_sights(sure, options.sights, &witnesses, &grid);
+  const CellGrid pierced = grid;
+  samples.carved = carve(options, &witnesses, &grid);
   if (samples.carved > 0 &&
-      uncovered(grid, &witnesses) > uncovered(whole, &witnesses) + kMostUncovered)
-    grid = whole, samples.carved = 0;
+      uncovered(grid, &witnesses) > uncovered(pierced, &witnesses) + kMostUncovered)
+    grid = pierced, samples.carved = 0;
   samples.cell = grid.cell;
   smooth(&grid);
   double area = 0;

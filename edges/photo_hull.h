@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "edges/sight_lines.h"
+#include "edges/sure_edges.h"
 #include "edges/training_view.h"
 
 namespace sketchsplat {
@@ -14,8 +14,8 @@ struct PhotoHullOptions {
   int cells = 96;           ///< along the longest side of the bounds
   int sweeps = 60;          ///< of carving, at the most; 0 leaves the visual hull
   double tolerance = 0.02;  ///< grey values in [0, 1] by which views may differ
-  double sights = 1;        ///< mean number of lines of sight through the cells about a cell that
-                            ///< empties it; 0: lines are not looked at
+  double sights = 0.25;     ///< share of the cells between planes that lines of sight must cross to
+                            ///< empty them; 0: lines are not looked at
   double agree = 0.75;      ///< share of the views that must be able to see one grey
 };
 
@@ -29,16 +29,14 @@ struct SurfaceSamples {
 };
 
 /// About `count` points spread over the surface of the photo hull: the cells that every mask holds
-/// (Laurentini, PAMI 1994) less those where the views that see them do not agree on a grey
-/// (Kutulakos and Seitz, A theory of shape by space carving, IJCV 2000) and those that `sights` go
-/// through. A view's say is the range
-/// of greys within the cell's footprint, so that cells on edges stay. Where
-/// that leaves pixels of masks without a cell (surfaces that shine do not agree on greys), all that
-/// was carved counts for nothing. Empty if nothing is left. The
-/// same for any number of threads.
+/// (Laurentini, PAMI 1994) less what lines of sight to `sure` edges leave empty between the planes
+/// of these edges (PlaneCarving), less those where the views that see them do not agree on a grey
+/// (Kutulakos and Seitz, A theory of shape by space carving, IJCV 2000). A view's say is the range
+/// of greys within the cell's footprint, so that cells on edges stay. Either carving counts for
+/// nothing where it leaves pixels of masks without a cell (surfaces that shine do not agree on
+/// greys). Empty if nothing is left. The same for any number of threads.
 SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
                                   const Eigen::AlignedBox3d& bounds, int count,
-                                  const PhotoHullOptions& options,
-                                  const std::vector<SightLine>& sights = {});
+                                  const PhotoHullOptions& options, const SureEdges& sure = {});
 
 }  // namespace sketchsplat

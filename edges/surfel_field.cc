@@ -65,9 +65,9 @@ SurfelInfluence spread_influence(SurfelInfluence part, const std::vector<int>& i
 class Trainer {
  public:
   Trainer(const std::vector<TrainingView>& views, const Eigen::AlignedBox3d& bounds,
-          const SurfelFieldOptions& options, const std::vector<SightLine>& sights,
+          const SurfelFieldOptions& options, const SureEdges& sure,
           const std::function<void()>& step)
-      : views_(views), bounds_(bounds), options_(options), sights_(sights), on_step_(step) {}
+      : views_(views), bounds_(bounds), options_(options), sure_(sure), on_step_(step) {}
 
   SurfelField run() {
     field_.drawing.kernel = options_.kernel;
@@ -80,8 +80,7 @@ class Trainer {
       // The same smallest footprint in space at all levels: a wider one would bulge over the
       // outline, and surfaces sink to make up for it.
       const int halvings = std::max(0, options_.halvings - level);
-      field_.drawing.lowpass_px =
-          options_.lowpass_px * side / options_.side_px / (1 << halvings);
+      field_.drawing.lowpass_px = options_.lowpass_px * side / options_.side_px / (1 << halvings);
       targets_ = make_targets(views_, std::max(16, side >> halvings), bounds_.center());
       if (level == 0) color_from_views();
       move_to_planes();
@@ -107,7 +106,7 @@ class Trainer {
 
   void seed() {
     const SurfaceSamples samples =
-        photo_hull_surface(views_, bounds_, options_.surfels, options_.hull, sights_);
+        photo_hull_surface(views_, bounds_, options_.surfels, options_.hull, sure_);
     const int n = int(samples.position.cols());
     field_.spacing = samples.spacing;
     field_.first_count = n;
@@ -368,7 +367,7 @@ class Trainer {
   const std::vector<TrainingView>& views_;
   const Eigen::AlignedBox3d bounds_;
   const SurfelFieldOptions options_;
-  const std::vector<SightLine>& sights_;
+  const SureEdges& sure_;
   const std::function<void()> on_step_;
   SurfelField field_;
   SurfelLossOptions loss_;
@@ -391,9 +390,9 @@ SurfelCloud SurfelField::cloud() const {
 }
 
 SurfelField train_surfels(const std::vector<TrainingView>& views, const Eigen::AlignedBox3d& bounds,
-                          const SurfelFieldOptions& options, const std::vector<SightLine>& sights,
+                          const SurfelFieldOptions& options, const SureEdges& sure,
                           const std::function<void()>& step) {
-  return Trainer(views, bounds, options, sights, step).run();
+  return Trainer(views, bounds, options, sure, step).run();
 }
 
 }  // namespace sketchsplat

@@ -63,16 +63,15 @@ struct SurfelField {
 };
 
 /// Fits surfels (2D Gaussian splatting, Huang et al., SIGGRAPH 2024) to views of one object, coarse
-/// to fine: starts on the photo hull, which `sights` help to carve; per level, moves to planes of
-/// neighbours where there is print, then Adam on mini-batches in a fixed order and density control
-/// until the loss stops; at last what makes a plane or a cylinder is laid on it. `views` at side_px
-/// or above; `bounds` hold the object. `step`, if given, is called after every rendering. The same
-/// bytes for any number of threads. Precondition: at least one view. No surfels if the hull is
-/// empty.
+/// to fine: starts on the photo hull, which `sure` edges help to carve; per level, moves to planes
+/// of neighbours where there is print, then Adam on mini-batches in a fixed order and density
+/// control until the loss stops; at last what makes a plane or a cylinder is laid on it. `views` at
+/// side_px or above; `bounds` hold the object. `step`, if given, is called after every rendering.
+/// The same bytes for any number of threads. Precondition: at least one view. No surfels if the
+/// hull is empty.
 SurfelField train_surfels(const std::vector<TrainingView>& views,
                           const Eigen::AlignedBox3d& bounds, const SurfelFieldOptions& options,
-                          const std::vector<SightLine>& sights = {},
-                          const std::function<void()>& step = {});
+                          const SureEdges& sure = {}, const std::function<void()>& step = {});
 
 /// What the field looks like from a view: depth and unit normals where alpha >= 1/2, else none. Of
 /// the surfels that make a pixel those count that lie with the heaviest part of them on one surface:

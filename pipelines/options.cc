@@ -162,9 +162,9 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfel-smooth-angle", &o->smooth_angle_deg, "deg", 1, 90, "Turn that neighbours keep");
   f->add("surfel-carving", &o->hull.sweeps, "sweeps", 0, 10000,
          "Of the first surface, where views disagree");
-  f->add(
-      "surfel-sights", &o->hull.sights, "lines", 0, 1e6,
-      "Lines of sight to edges through a cell of the first surface that empty it; 0 looks at none");
+  f->add("surfel-sights", &o->hull.sights, "", 0, 1,
+         "Share of the first surface's cells between planes that lines of sight to edges must cross "
+         "to empty them; 0 looks at none");
   f->add("surfel-moves", &o->moves.rounds, "rounds", 0, 1000,
          "Of surfels to planes on which views agree better, before each level");
   f->add("surfel-planes", &o->planes.fewest, "surfels", 0, 1e6,

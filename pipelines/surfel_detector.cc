@@ -73,7 +73,7 @@ class SurfelDetector : public Detector {
     Stage stage("surfels", options_.surfels.renderings, report, progress);
     const std::vector<TrainingView> views = look(scene);
     field_ =
-        train_surfels(views, world_.bounds, options_.surfels, sights(), [&stage] { stage.step(); });
+        train_surfels(views, world_.bounds, options_.surfels, sure(), [&stage] { stage.step(); });
     if (field_.surfels.size() == 0)
       throw TooLittleError(scene.folder + ": expected an object inside all masks, found nothing");
     if (report) {
@@ -144,11 +144,13 @@ class SurfelDetector : public Detector {
   }
 
   // What the edges of the pictures, printed ones too, say about where nothing is.
-  std::vector<SightLine> sights() const {
+  SureEdges sure() const {
     if (options_.surfels.hull.sights == 0) return {};
     LiftOptions options;
     options.stride_px = 6, options.sweep_views = 16, options.min_views = 5;
-    return sight_lines(world_, lift_edges(world_, options));
+    const CurvePoints tracks =
+        track_points(lift_edges(world_, options), world_.footprint, {}, SureEdgeOptions().run);
+    return sure_edges(world_, tracks);
   }
 
   static Picture read_masked(const View& view) {
