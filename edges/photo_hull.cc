@@ -17,6 +17,7 @@ constexpr double kCellPx = 2;            // [px] of a cell in the pictures that 
 constexpr int kFewestViews = 4;          // that may condemn a cell
 constexpr double kMostUncovered = 0.01;  // share of the masks that carving may lay bare
 constexpr double kMostPierced = 0.002;   // the same of carving by lines of sight
+constexpr double kCrossed = 1;           // lines of sight through a cell that empty it, mean
 
 // What a view says about cells.
 struct Witness {
@@ -175,19 +176,22 @@ double uncovered(const CellGrid& g, std::vector<Witness>* witnesses) {
   return all > 0 ? bare / all : 0;
 }
 
-// The more lines are wrong, the larger the share of a region's cells that they must cross.
-int carve_sights(const SureEdges& sure, double share, std::vector<Witness>* witnesses,
-                 CellGrid* grid) {
-  if (share <= 0 || sure.lines.empty()) return 0;
+// Between planes first: the more lines are wrong, the larger the share of a region's cells that
+// they must cross. Then cell by cell.
+void carve_sights(const SureEdges& sure, double share, std::vector<Witness>* witnesses,
+                  CellGrid* grid) {
+  if (share <= 0 || sure.lines.empty()) return;
   const CellGrid hull = *grid;
-  const double bare = uncovered(hull, witnesses);
+  const double most = uncovered(hull, witnesses) + kMostPierced;
   const PlaneCarving carving(sure, edge_planes(sure), hull);
   for (int times = 1; times * share < 1; ++times) {
-    const int carved = carving.carve(times * share, grid);
-    if (uncovered(*grid, witnesses) <= bare + kMostPierced) return carved;
+    carving.carve(times * share, grid);
+    if (uncovered(*grid, witnesses) <= most) break;
+    *grid = hull;
   }
-  *grid = hull;
-  return 0;
+  const CellGrid flat = *grid;
+  if (carve_crossed(sure.lines, kCrossed, grid) > 0 && uncovered(*grid, witnesses) > most)
+    *grid = flat;
 }
 
 // Cells are steps; a surface is not.

@@ -30,11 +30,11 @@ struct SurfaceSamples {
 
 /// About `count` points spread over the surface of the photo hull: the cells that every mask holds
 /// (Laurentini, PAMI 1994) less what lines of sight to `sure` edges leave empty between the planes
-/// of these edges (PlaneCarving), less those where the views that see them do not agree on a grey
-/// (Kutulakos and Seitz, A theory of shape by space carving, IJCV 2000). A view's say is the range
-/// of greys within the cell's footprint, so that cells on edges stay. Either carving counts for
-/// nothing where it leaves pixels of masks without a cell (surfaces that shine do not agree on
-/// greys). Empty if nothing is left. The same for any number of threads.
+/// of these edges (PlaneCarving) and cells that many of them cross, less those where the views that
+/// see them do not agree on a grey (Kutulakos and Seitz, A theory of shape by space carving, IJCV
+/// 2000). A view's say is the range of greys within the cell's footprint, so that cells on edges
+/// stay. Carving counts for nothing where it leaves pixels of masks without a cell (surfaces that
+/// shine do not agree on greys). Empty if nothing is left. The same for any number of threads.
 SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
                                   const Eigen::AlignedBox3d& bounds, int count,
                                   const PhotoHullOptions& options, const SureEdges& sure = {});

@@ -11,11 +11,26 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kStep = 0.5,
-                 kLast = 1;       // [cells] along a line, and before its end that may be solid
-constexpr double kSurface = 0.1;  // price of the side of a cell, for that of a cell
-constexpr int kBand = 2;          // [cells] from a new surface in which distances are its
-constexpr float kFar = 3;         // [cells] the longest distance that is told
+constexpr double kStep = 0.5;       // [cells] along a line
+constexpr double kLast = 1;         // [cells] before its end that may be solid
+constexpr double kLastBlurred = 2;  // the same where neighbours are counted, too
+constexpr double kSurface = 0.1;    // price of the side of a cell, for that of a cell
+constexpr int kBand = 2;            // [cells] from a new surface in which distances are its
+constexpr float kFar = 3;           // [cells] the longest distance that is told
+
+// f(cell, position in the grid, in cells) of the steps along a line through the hull.
+template <typename F>
+void walk(const SightLine& line, double last, const CellGrid& g, const F& f) {
+  const double reach = Eigen::Vector3d(g.nx, g.ny, g.nz).norm();
+  const Eigen::Vector3d end = (line.point - g.low) / g.cell;
+  const Eigen::Vector3d way = (line.eye - g.low) / g.cell - end;
+  const double length = way.norm();
+  for (double s = last; s < std::min(length, reach); s += kStep) {
+    const Eigen::Vector3d x = end + s / length * way;
+    const Eigen::Vector3i q = x.array().floor().cast<int>();
+    if (g.inside(q.x(), q.y(), q.z())) f(g.index(q.x(), q.y(), q.z()), x);
+  }
+}
 
 }  // namespace
 
@@ -47,23 +62,14 @@ void PlaneCarving::divide() {
 
 void PlaneCarving::cross(const std::vector<SightLine>& lines) {
   crossed_.assign(hull_.size(), 0);
-  const double reach = Eigen::Vector3d(hull_.nx, hull_.ny, hull_.nz).norm();
 #pragma omp parallel for schedule(static)
-  for (int k = 0; k < int(lines.size()); ++k) {
-    const Eigen::Vector3d end = (lines[k].point - hull_.low) / hull_.cell;
-    const Eigen::Vector3d way = (lines[k].eye - hull_.low) / hull_.cell - end;
-    const double length = way.norm();
-    for (double s = kLast; s < std::min(length, reach); s += kStep) {
-      const Eigen::Vector3d x = end + s / length * way;
-      const Eigen::Vector3i q = x.array().floor().cast<int>();
-      if (!hull_.inside(q.x(), q.y(), q.z())) continue;
-      const int c = hull_.index(q.x(), q.y(), q.z());
+  for (int k = 0; k < int(lines.size()); ++k)
+    walk(lines[k], kLast, hull_, [&](int c, const Eigen::Vector3d& x) {
       // Of a cell that a plane cuts, the other part says nothing about this region.
-      if (sides(hull_.low + hull_.cell * x) != sides_[c]) continue;
+      if (sides(hull_.low + hull_.cell * x) != sides_[c]) return;
 #pragma omp atomic write
       crossed_[c] = 1;
-    }
-  }
+    });
 }
 
 std::vector<char> PlaneCarving::empty_regions(double share) const {
@@ -134,6 +140,32 @@ int PlaneCarving::carve(double share, CellGrid* grid) const {
     grid->field[c] = gone[c] ? -d : std::min(hull_.field[c], d);
   }
   return int(std::count(gone.begin(), gone.end(), 1));
+}
+
+int carve_crossed(const std::vector<SightLine>& lines, double least, CellGrid* grid) {
+  std::vector<int> count(grid->size(), 0);
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < int(lines.size()); ++k) {
+    int before = -1;
+    walk(lines[k], kLastBlurred, *grid, [&](int c, const Eigen::Vector3d&) {
+      if (c == before) return;
+      before = c;
+#pragma omp atomic
+      ++count[c];
+    });
+  }
+  // Lines are thin: those of a neighbourhood count together.
+  for (const int s : {1, grid->nx, grid->nx * grid->ny}) {
+    const std::vector<int> single = count;
+    for (int c = s; c + s < grid->size(); ++c) count[c] = single[c - s] + single[c] + single[c + s];
+  }
+  int carved = 0;
+  for (int c = 0; c < grid->size(); ++c) {
+    if (!(grid->field[c] > 0) || count[c] < 27 * least) continue;
+    grid->field[c] = -1;
+    ++carved;
+  }
+  return carved;
 }
 
 }  // namespace sketchsplat

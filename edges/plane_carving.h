@@ -40,4 +40,9 @@ class PlaneCarving {
   int regions_ = 0;
 };
 
+/// Takes away the cells about which, on the mean over their neighbourhood, `least` lines of sight
+/// or more go through a cell: bores and whatever else no planes bound. The last cells before an
+/// edge stay, for they may hold it. Returns their number.
+int carve_crossed(const std::vector<SightLine>& lines, double least, CellGrid* grid);
+
 }  // namespace sketchsplat

@@ -155,5 +155,33 @@ TEST(PlaneCarving, WithoutPlanesLeavesTheHull) {
   EXPECT_EQ(grid.field, hull.field);
 }
 
+// Lines from the bottom of a round hole, seen from above.
+std::vector<SightLine> bore(int count) {
+  std::vector<SightLine> lines;
+  for (int k = 0; k < count; ++k) {
+    const double r = 0.15 * std::sqrt(double(k) / count), a = 2.4 * k;
+    const Vector3d floor(0.5 + r * std::cos(a), 0.5 + r * std::sin(a), 0.4);
+    lines.push_back({floor + Vector3d(0, 0, 3), floor});
+  }
+  return lines;
+}
+
+TEST(CarveCrossed, OpensAHoleThatNoPlanesBound) {
+  const CellGrid hull = solid();
+  CellGrid grid = hull;
+  const int carved = carve_crossed(bore(2000), 1, &grid);
+  EXPECT_GT(carved, 0.7 * M_PI * 0.15 * 0.15 * 0.5 / std::pow(grid.cell, 3));
+  for (int c = 0; c < grid.size(); ++c)
+    if (hull.field[c] > 0 && grid.field[c] < 0) {
+      EXPECT_LT((grid.center(c) - Vector3d(0.5, 0.5, 0)).head<2>().norm(), 0.15 + 2 * grid.cell);
+      EXPECT_GT(grid.center(c).z(), 0.4);
+    }
+}
+
+TEST(CarveCrossed, FewLinesDrillNoHole) {
+  CellGrid grid = solid();
+  EXPECT_EQ(carve_crossed(bore(20), 1, &grid), 0);
+}
+
 }  // namespace
 }  // namespace sketchsplat
