@@ -58,6 +58,7 @@ std::vector<BenchVariant> ablation_variants_of(const std::vector<std::string>& d
       {"without cylinders", {{"surfel-cylinders", "0"}}},
       {"without smoothness", {{"surfel-smoothness", "0"}}},
       {"without carving", {{"surfel-carving", "0"}}},
+      {"without lines of sight", {{"surfel-sights", "0"}}},
       {"normals blended", {{"surfel-mode", "0"}}},
       {"edges where surfels say", {{"surfel-snap", "0"}}},
   };

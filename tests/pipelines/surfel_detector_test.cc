@@ -17,13 +17,13 @@
 namespace sketchsplat {
 namespace {
 
-// A plate with a round hole, with its truth; small.
+// A part (a plate with a round hole), with its truth; small.
 struct Rendered {
   TempFolder folder;
   Scene scene;
-  Rendered(Style style, int views, int resolution) {
+  Rendered(Style style, int views, int resolution, const std::string& part = "box-hole") {
     SynthesizeOptions options;
-    options.part = "box-hole";
+    options.part = part;
     options.seed = 2;
     options.rig.views = views;
     options.rig.resolution = resolution;
@@ -99,6 +99,22 @@ TEST(SurfelDetector, FindsTheShapeOfPlainFaces) {
   RecordProperty("f", std::to_string(plain.edges.f));
   EXPECT_LT(plain.maps.normal_deg, 12.5);
   EXPECT_GT(plain.edges.f, 0.85);
+}
+
+// Nothing but its edges tells how deep the floor lies: no mask shows it, all of it has one grey.
+TEST(SurfelDetector, StartsOnTheFloorOfAPlainPocket) {
+  const Rendered part(Style::kPlain, 60, 240, "tray");
+  DetectionOptions with;
+  with.detector = "2dgs-sn";
+  with.surfels.renderings = 2;
+  with.surfels.surfels = 3000;
+  DetectionOptions without = with;
+  without.surfels.hull.sights = 0;
+  const Worth seen = worth(part.scene, with), blind = worth(part.scene, without);
+  RecordProperty("depth_px", std::to_string(seen.maps.depth_px));
+  RecordProperty("depth_px_without", std::to_string(blind.maps.depth_px));
+  EXPECT_LT(seen.maps.depth_px, 0.5);
+  EXPECT_LT(seen.maps.normal_deg, 0.75 * blind.maps.normal_deg);
 }
 
 TEST(SurfelDetector, GivesTheSameBytesForAnyNumberOfThreads) {
