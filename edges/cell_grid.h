@@ -10,7 +10,7 @@ namespace sketchsplat {
 /// the grid are outside.
 struct CellGrid {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();  ///< corner of the first cell, world units
-  double cell = 0;      ///< side, world units
+  double cell = 0;                                ///< side, world units
   int nx = 0, ny = 0, nz = 0;
   std::vector<float> field;  ///< > 0 inside, in cells, about the distance to the surface
 
