@@ -20,7 +20,7 @@ constexpr double kWithinPx = 12, kBesidePx = 3;  // [pixel footprints] what lies
 constexpr double kParallel = 0.4;
 
 struct Candidate {
-  Plane plane;
+  EdgePlane plane;
   std::vector<int> points;
   double weight = 1;
   bool taken = false;
@@ -35,7 +35,7 @@ class EdgePlanes {
     fewest_ = std::max(options.fewest, int(options.least_share * n_));
   }
 
-  std::vector<Plane> run() const {
+  std::vector<EdgePlane> run() const {
     std::vector<Candidate> candidates = distinct(drawn());
     for (Candidate& c : candidates) c.weight = weight(c.points);
     return choose(&candidates);
@@ -73,16 +73,16 @@ class EdgePlanes {
     return order[rank].second;
   }
 
-  bool through(int i, int j, Plane* plane) const {
+  bool through(int i, int j, EdgePlane* plane) const {
     const Vector3d way = edges_.position.col(j) - edges_.position.col(i);
     if (way.norm() < kNearest * reach_) return false;
     const Vector3d normal = edges_.tangent.col(i).cross(way.normalized());
     if (normal.norm() < 0.1) return false;
-    *plane = Plane(normal.normalized(), Vector3d(edges_.position.col(i)));
+    *plane = EdgePlane(normal.normalized(), Vector3d(edges_.position.col(i)));
     return std::abs(plane->normal().dot(edges_.tangent.col(j))) < sine_;
   }
 
-  std::vector<int> near(const Plane& plane) const {
+  std::vector<int> near(const EdgePlane& plane) const {
     std::vector<int> points;
     for (int k = 0; k < n_; ++k)
       if (plane.absDistance(edges_.position.col(k)) < reach_ &&
@@ -91,16 +91,12 @@ class EdgePlanes {
     return points;
   }
 
-  Plane fit(const std::vector<int>& points) const {
-    Vector3d mean = Vector3d::Zero();
-    for (const int k : points) mean += edges_.position.col(k) / double(points.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const int k : points) {
-      const Vector3d d = edges_.position.col(k) - mean;
-      spread += d * d.transpose();
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(spread);
-    return Plane(Vector3d(es.eigenvectors().col(0)), mean);
+  EdgePlane fit(const std::vector<int>& points) const {
+    const Eigen::Matrix3Xd p = edges_.position(Eigen::all, points);
+    const Vector3d mean = p.rowwise().mean();
+    const Eigen::Matrix3Xd q = p.colwise() - mean;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(q * q.transpose());
+    return EdgePlane(Vector3d(es.eigenvectors().col(0)), mean);
   }
 
   // The same as one of these?
@@ -128,9 +124,9 @@ class EdgePlanes {
 
   // Faces have edges of more than one direction, planes of two parallel edges do not.
   double weight(const std::vector<int>& points) const {
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const int k : points) spread += edges_.tangent.col(k) * edges_.tangent.col(k).transpose();
-    const Vector3d v = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
+    const Eigen::Matrix3Xd t = edges_.tangent(Eigen::all, points);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(t * t.transpose());
+    const Vector3d v = es.eigenvalues();
     return kParallel + (1 - kParallel) * std::min(1.0, 4 * v[1] / (v[1] + v[2]));
   }
 
@@ -147,12 +143,12 @@ class EdgePlanes {
     return left && right;
   }
 
-  std::vector<Plane> choose(std::vector<Candidate>* candidates) const {
+  std::vector<EdgePlane> choose(std::vector<Candidate>* candidates) const {
     const double part = std::cos(options_.part_deg * M_PI / 180);
-    std::vector<Plane> planes;
+    std::vector<EdgePlane> planes;
     std::vector<std::vector<int>> of_point(n_);
     std::vector<char> full(n_, 0);
-    const auto is_new = [&](int k, const Plane& plane) {
+    const auto is_new = [&](int k, const EdgePlane& plane) {
       if (full[k]) return false;
       for (const int p : of_point[k])
         if (std::abs(planes[p].normal().dot(plane.normal())) > part) return false;
@@ -188,7 +184,7 @@ class EdgePlanes {
 
 }  // namespace
 
-std::vector<Plane> edge_planes(const SureEdges& edges, const EdgePlaneOptions& options) {
+std::vector<EdgePlane> edge_planes(const SureEdges& edges, const EdgePlaneOptions& options) {
   return EdgePlanes(edges, options).run();
 }
 

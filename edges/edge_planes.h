@@ -8,7 +8,8 @@
 
 namespace sketchsplat {
 
-using Plane = Eigen::Hyperplane<double, 3>;
+/// A plane that edges lie in, perhaps that of a face.
+using EdgePlane = Eigen::Hyperplane<double, 3>;
 
 struct EdgePlaneOptions {
   double reach_px = 1;         ///< [pixel footprints] from a point to its plane
@@ -25,6 +26,6 @@ struct EdgePlaneOptions {
 /// as far ones, then greedily the plane that explains the most points that are not explained yet.
 /// An edge is explained by two planes, a print inside a face by one: any two parallel edges share a
 /// plane, and without that rule most planes would be no face's. The same for any number of threads.
-std::vector<Plane> edge_planes(const SureEdges& edges, const EdgePlaneOptions& options = {});
+std::vector<EdgePlane> edge_planes(const SureEdges& edges, const EdgePlaneOptions& options = {});
 
 }  // namespace sketchsplat

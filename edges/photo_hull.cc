@@ -17,7 +17,8 @@ constexpr double kCellPx = 2;            // [px] of a cell in the pictures that 
 constexpr int kFewestViews = 4;          // that may condemn a cell
 constexpr double kMostUncovered = 0.01;  // share of the masks that carving may lay bare
 constexpr double kMostPierced = 0.002;   // the same of carving by lines of sight
-constexpr double kCrossed = 1;           // lines of sight through a cell that empty it, mean
+constexpr int kShares = 3;      // of crossed cells that are tried, one, two and three times
+constexpr double kCrossed = 1;  // lines of sight through a cell that empty it, mean
 
 // What a view says about cells.
 struct Witness {
@@ -179,19 +180,24 @@ double uncovered(const CellGrid& g, std::vector<Witness>* witnesses) {
 // Between planes first: the more lines are wrong, the larger the share of a region's cells that
 // they must cross. Then cell by cell.
 void carve_sights(const SureEdges& sure, double share, std::vector<Witness>* witnesses,
-                  CellGrid* grid) {
+                  CellGrid* grid, SurfaceSamples* samples) {
   if (share <= 0 || sure.lines.empty()) return;
   const CellGrid hull = *grid;
   const double most = uncovered(hull, witnesses) + kMostPierced;
-  const PlaneCarving carving(sure, edge_planes(sure), hull);
-  for (int times = 1; times * share < 1; ++times) {
-    carving.carve(times * share, grid);
+  const std::vector<EdgePlane> planes = edge_planes(sure);
+  samples->planes = int(planes.size());
+  const PlaneCarving carving(sure, planes, hull);
+  for (int times = 1; times <= kShares && times * share < 1; ++times) {
+    samples->emptied = carving.carve(times * share, grid);
     if (uncovered(*grid, witnesses) <= most) break;
-    *grid = hull;
+    *grid = hull, samples->emptied = 0;
   }
   const CellGrid flat = *grid;
-  if (carve_crossed(sure.lines, kCrossed, grid) > 0 && uncovered(*grid, witnesses) > most)
+  const int crossed = carve_crossed(sure.lines, kCrossed, grid);
+  if (crossed > 0 && uncovered(*grid, witnesses) > most)
     *grid = flat;
+  else
+    samples->emptied += crossed;
 }
 
 // Cells are steps; a surface is not.
@@ -281,7 +287,7 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
   for (int v = 0; v < int(views.size()); ++v)
     witnesses[v] = make_witness(views[v], cell, bounds.center());
   CellGrid grid = visual_hull(witnesses, bounds, options.cells);
-  carve_sights(sure, options.sights, &witnesses, &grid);
+  carve_sights(sure, options.sights, &witnesses, &grid, &samples);
   const CellGrid pierced = grid;
   samples.carved = carve(options, &witnesses, &grid);
   if (samples.carved > 0 &&

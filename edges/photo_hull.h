@@ -25,6 +25,8 @@ struct SurfaceSamples {
   Eigen::Matrix3Xd normal;  ///< unit, outwards
   double spacing = 0;       ///< least distance of two points, world units
   double cell = 0;          ///< of the grid that they were taken from, world units
+  int planes = 0;           ///< of the edges, between which lines of sight emptied the hull
+  int emptied = 0;          ///< cells that lines of sight took away
   int carved = 0;           ///< cells that were taken away because the views disagree
 };
 

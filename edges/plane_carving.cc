@@ -34,7 +34,7 @@ void walk(const SightLine& line, double last, const CellGrid& g, const F& f) {
 
 }  // namespace
 
-PlaneCarving::PlaneCarving(const SureEdges& edges, const std::vector<Plane>& planes,
+PlaneCarving::PlaneCarving(const SureEdges& edges, const std::vector<EdgePlane>& planes,
                            const CellGrid& hull)
     : planes_(planes), hull_(hull) {
   divide();

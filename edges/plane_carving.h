@@ -17,7 +17,7 @@ namespace sketchsplat {
 class PlaneCarving {
  public:
   /// At most 64 planes. `hull` must outlive it.
-  PlaneCarving(const SureEdges& edges, const std::vector<Plane>& planes, const CellGrid& hull);
+  PlaneCarving(const SureEdges& edges, const std::vector<EdgePlane>& planes, const CellGrid& hull);
 
   /// Without the regions of which lines cross more than about this share of the cells. Distances
   /// of the field are to the planes, near them. Returns the number of cells that were taken away.
@@ -32,7 +32,7 @@ class PlaneCarving {
   double distance(int cell, const std::vector<char>& gone) const;
   Sides sides(const Eigen::Vector3d& p) const;
 
-  const std::vector<Plane> planes_;
+  const std::vector<EdgePlane> planes_;
   const CellGrid& hull_;
   std::vector<Sides> sides_;   // per cell
   std::vector<int> region_;    // per cell; -1 outside the hull

@@ -110,6 +110,7 @@ class Trainer {
     const int n = int(samples.position.cols());
     field_.spacing = samples.spacing;
     field_.first_count = n;
+    field_.planes = samples.planes, field_.emptied = samples.emptied;
     Eigen::MatrixXd& values = field_.surfels.values;
     values = Eigen::MatrixXd::Zero(SurfelSet::kRows, n);
     for (int i = 0; i < n; ++i) {

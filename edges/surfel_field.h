@@ -57,6 +57,7 @@ struct SurfelField {
   double spacing = 0;      ///< of the first surfels, world units
   std::vector<double> losses;  ///< mean of each tenth of the steps
   int first_count = 0, split = 0, merged = 0, pruned = 0, moved = 0, flat = 0, round = 0;
+  int planes = 0, emptied = 0;  ///< see SurfaceSamples
   int renderings = 0;
   int side_px = 0;  ///< longer side of the largest pictures it was fitted to
   SurfelCloud cloud() const;  ///< with the colours that are drawn

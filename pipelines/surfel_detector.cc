@@ -78,15 +78,19 @@ class SurfelDetector : public Detector {
       throw TooLittleError(scene.folder + ": expected an object inside all masks, found nothing");
     if (report) {
       report->counts.push_back({"surfels", double(field_.surfels.size())});
+      report->counts.push_back({"surfel_edge_planes", double(field_.planes)});
+      report->counts.push_back({"surfel_cells_emptied", double(field_.emptied)});
       report->counts.push_back({"surfel_renderings", double(field_.renderings)});
       report->counts.push_back({"surfel_loss", field_.losses.back()});
     }
-    char text[200];
+    char text[300];
     std::snprintf(text, sizeof text,
+                  "%d cells empty between %d planes of edges; "
                   "%d surfels of %d, %d split, %d merged, %d pruned, %d moved, "
                   "%d on planes, %d on cylinders, loss %.4f",
-                  field_.surfels.size(), field_.first_count, field_.split, field_.merged,
-                  field_.pruned, field_.moved, field_.flat, field_.round, field_.losses.back());
+                  field_.emptied, field_.planes, field_.surfels.size(), field_.first_count,
+                  field_.split, field_.merged, field_.pruned, field_.moved, field_.flat,
+                  field_.round, field_.losses.back());
     stage.result(text);
   }
 

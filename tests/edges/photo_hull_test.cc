@@ -64,6 +64,8 @@ TEST(PhotoHull, LinesOfSightOpenAPitThatNoMaskShows) {
   EXPECT_GT(in_the_mouth(closed, 0.6), 3);
   EXPECT_EQ(in_the_mouth(open, 0.41), 0);
   EXPECT_GT(in_the_mouth(open, 0.39), 2) << "the floor, exactly";
+  EXPECT_EQ(open.planes, 6);
+  EXPECT_EQ(closed.emptied, 0);
 }
 
 TEST(PhotoHull, LinesOfSightAreNotLookedAtWhereTheirShareIsZero) {
@@ -83,6 +85,7 @@ TEST(PhotoHull, LinesOfSightThatWouldLayMasksBareCountForNothing) {
     }
   const SurfaceSamples s = photo_hull_surface(views, kBox, 1000, small_options(), all);
   EXPECT_GT(in_the_mouth(s, 0.6), 3);
+  EXPECT_EQ(s.emptied, 0);
 }
 
 // No two views agree on what shines.
