@@ -13,12 +13,15 @@
 namespace sketchsplat {
 namespace {
 
+constexpr int kBeyond = 2;
 constexpr int kWindow = 8;  // samples, one pixel apart, by which a view is known to see the stroke
 
 // Samples of one stroke from t_first on, `step` apart in t.
 struct Run {
   int first = 0, count = 0;  // in the common list of samples
   double t_first = 0, t_step = 0;
+  int at(double t) const { return int(std::lround((t - t_first) / t_step)); }
+  double t(int sample) const { return t_first + sample * t_step; }
 };
 
 // Owner of every edgel: the stroke that lies nearest to it; -1 if none does.
@@ -32,13 +35,17 @@ std::vector<std::vector<int>> owners(const Sketch& sketch, const EdgeWorld& worl
   return owner;
 }
 
-// Last sample from `from` in direction `way` up to which the views keep seeing the stroke.
+// Last sample from the middle in direction `way` up to which the views keep seeing the stroke. A
+// gap before its present end is crossed if kBeyond times as much is seen beyond: print that crosses
+// an edge hides it for some pixels.
 int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int stroke,
-         const Run& run, int from, int way, const ExtentOptions& options) {
+         const Run& run, int way, const ExtentOptions& options) {
+  const int from = run.at(0.5), end = run.at(way > 0 ? 1 : 0);
   const int num_views = int(owner.size());
   std::vector<int> recent(num_views);
   std::vector<std::vector<int>> history;
   int last_good = from, bad = 0;
+  int balance = 0, best = 0;
   for (int k = from; k >= 0 && k < run.count; k += way) {
     const int i = run.first + k;
     std::vector<int> here;
@@ -53,10 +60,10 @@ int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int
     for (int v : here) agree += seen == 0 || 2 * recent[v] > seen;
     const bool warm = int(history.size()) >= kWindow / 2;
     const bool good = agree >= options.min_views && (!warm || agree >= options.share * active);
-    if (good)
-      last_good = k, bad = 0;
-    else if (++bad >= 3 && warm)
-      break;
+    balance += good ? 1 : -kBeyond;
+    bad = good ? 0 : bad + 1;
+    if (balance > best) best = balance, last_good = k;
+    if (bad >= 3 && warm && way * (end - k) <= 0) break;
     if (bad > 0) continue;  // what ended the stroke does not tell who sees it
     for (int v : here) ++recent[v];
     history.push_back(here);
@@ -99,7 +106,7 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
       run.t_step = (before + length_px + after) / length_px / (run.count - 1);
       for (int k = 0; k < run.count; ++k) {
         Eigen::Vector3d p, d;
-        evaluate_stroke(sketch, s, run.t_first + k * run.t_step, &p, &d);
+        evaluate_stroke(sketch, s, run.t(k), &p, &d);
         position.push_back(p);
         tangent.push_back(d.normalized());
       }
@@ -121,12 +128,9 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
     const Run& run = runs[s];
     if (run.count == 0) continue;
     const Stroke& stroke = sketch.strokes[s];
-    const int middle = int(std::lround((0.5 - run.t_first) / run.t_step));
     double t0 = 0, t1 = 1;
-    if (degree[stroke.begin] == 1)
-      t0 = run.t_first + run.t_step * walk(matches, owner, s, run, middle, -1, options);
-    if (degree[stroke.end] == 1)
-      t1 = run.t_first + run.t_step * walk(matches, owner, s, run, middle, +1, options);
+    if (degree[stroke.begin] == 1) t0 = run.t(walk(matches, owner, s, run, -1, options));
+    if (degree[stroke.end] == 1) t1 = run.t(walk(matches, owner, s, run, +1, options));
     if (!(t1 - t0 > 0.05)) continue;
     const ControlPoints c = subcurve(stroke.kind, control_points(sketch, s), t0, t1);
     out.nodes.col(stroke.begin) = c.p[0];

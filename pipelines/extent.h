@@ -14,8 +14,9 @@ struct ExtentOptions {
 };
 
 /// Lets every free end (a node that one stroke holds) run or retreat to where the views stop seeing
-/// the stroke; edgels that another stroke explains better do not count. Closed strokes and shared
-/// nodes stay.
+/// the stroke; edgels that another stroke explains better do not count. It does not retreat
+/// to a gap beyond which it is seen for twice the gap's length. Closed strokes and shared nodes
+/// stay.
 Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOptions& options);
 
 }  // namespace sketchsplat

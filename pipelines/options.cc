@@ -220,6 +220,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_select(&o->select, f);
   f->add("surfel-bias", &o->surfel_bias_px, "px", 0, 100,
          "At least --max-bias of edges that surfels tell of (--detector 2dgs-sn)");
+  f->add("surfel-rms", &o->surfel_rms_px, "px", 0, 100,
+         "At least --max-rms of those of them that lie still in half of the views");
   list_extent(&o->extent, f);
   list_optimize(&o->optimize, f);
   list_topology(&o->topology, f);

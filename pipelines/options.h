@@ -56,6 +56,8 @@ struct ReconstructOptions : DetectionOptions {
   bool final_polish = true;  ///< end on the edgels themselves
   /// [px] offset from view to view of edges that surfels alone tell of, if above select.max_bias_px
   double surfel_bias_px = 0.4;
+  /// [px] scatter of edges that surfels tell of and that lie still, if above select.max_rms_px
+  double surfel_rms_px = 0.45;
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
 };
 

@@ -16,6 +16,9 @@ namespace {
 // contour.
 constexpr double kSeldom = 0.25, kOutline = 0.9;
 
+// [px] offset in half of the views of what lies still.
+constexpr double kLiesStillPx = 0.12;
+
 // Width of sharp edges in these images: lower quartile over the well supported strokes' edgels.
 double sharp_width(const StrokeObservation& o, int min_views) {
   std::vector<std::pair<double, double>> widths;  // width, how many edgels say so
@@ -114,7 +117,10 @@ Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
               const SelectOptions& options) {
   // A few views agree by accident more easily: so they must agree better.
   const double many = std::min(1.0, 0.5 * s.views / options.min_views);
-  if (s.rms_px > many * options.max_rms_px + sigma) return Verdict::kScattered;
+  const double scatter = s.bias_px <= kLiesStillPx
+                             ? std::max(options.max_rms_px, options.still_rms_px)
+                             : options.max_rms_px;
+  if (s.rms_px > many * scatter + sigma) return Verdict::kScattered;
   if (s.bias_px > options.max_bias_px + sigma) return Verdict::kMoving;
   if (sharp > 0 && s.width_px > options.max_width * sharp) return Verdict::kBlurred;
   // What lies dead still in many views is no contour, though its two sides look alike in others.

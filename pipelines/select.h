@@ -9,15 +9,16 @@
 namespace sketchsplat {
 
 struct SelectOptions {
-  int min_views = 4;            ///< that must see a stroke by edgels no better stroke explains
-  double min_cover = 0.5;       ///< share of its length that min_views views see
-  double max_rms_px = 0.3;      ///< [px] scatter of its edgels, beyond that of the scene
-  double max_bias_px = 0.12;    ///< [px] offset in half of the views, beyond that scatter
-  double max_width = 1.25;      ///< width of its edgels over that of the scene's sharp edges
-  double min_seen = 0.22;       ///< share of the sure sightings with an edgel, if it lies still
-  double min_sure = 0.25;       ///< sure sightings that tell something, per sighting
-  double min_length_px = 4.0;   ///< [px]
-  double price = 3;             ///< [nat] of a parameter, see SegmentOptions
+  int min_views = 4;           ///< that must see a stroke by edgels no better stroke explains
+  double min_cover = 0.5;      ///< share of its length that min_views views see
+  double max_rms_px = 0.3;     ///< [px] scatter of its edgels, beyond that of the scene
+  double still_rms_px = 0.3;   ///< [px] the same of what lies still in half of the views, if larger
+  double max_bias_px = 0.12;   ///< [px] offset in half of the views, beyond that scatter
+  double max_width = 1.25;     ///< width of its edgels over that of the scene's sharp edges
+  double min_seen = 0.22;      ///< share of the sure sightings with an edgel, if it lies still
+  double min_sure = 0.25;      ///< sure sightings that tell something, per sighting
+  double min_length_px = 4.0;  ///< [px]
+  double price = 3;            ///< [nat] of a parameter, see SegmentOptions
   double place_sigma_px = 0.2;  ///< [px] see place_sigma_px
 };
 

@@ -158,9 +158,12 @@ SelectOptions select_options(const ReconstructOptions& options) {
   select.price = options.segment.price;
   select.place_sigma_px = options.rechain.sigma_px;
   // Surfels say less exactly than pictures where an edge is, and their detector has left out the
-  // contours of round surfaces: a stroke may stand off further in single views.
-  if (options.detector == "2dgs-sn")
+  // contours of round surfaces: a stroke may stand off further in single views. Print that runs up
+  // to an edge scatters its edgels, but moves it in no view.
+  if (options.detector == "2dgs-sn") {
     select.max_bias_px = std::max(select.max_bias_px, options.surfel_bias_px);
+    select.still_rms_px = options.surfel_rms_px;
+  }
   return select;
 }
 

@@ -93,6 +93,19 @@ TEST(FitExtents, AnEndDoesNotRunIntoTheEdgelsOfAnotherStroke) {
   EXPECT_GT(fitted.nodes(0, fitted.strokes[1].begin), 0.51 - kSlack * w.footprint);
 }
 
+TEST(FitExtents, AGapInsideAStrokeIsCrossedIfMoreIsSeenBeyondThanItIsLong) {
+  for (const auto& [seen_again, whole] : {std::pair(0.76, true), std::pair(0.84, false)}) {
+    Sketch s;
+    add_line(&s, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
+    const EdgeWorld w = ideal_world(ring_of_views(16, kMiddle, 3),
+                                    {segment({0.1, 0.5, 0.5}, {0.7, 0.5, 0.5}),
+                                     segment({seen_again, 0.5, 0.5}, {0.9, 0.5, 0.5})});
+    const Sketch fitted = fit_extents(s, w, {});
+    EXPECT_NEAR(fitted.nodes(0, s.strokes[0].begin), 0.1, kSlack * w.footprint);
+    EXPECT_NEAR(fitted.nodes(0, s.strokes[0].end), whole ? 0.9 : 0.7, kSlack * w.footprint);
+  }
+}
+
 TEST(FitExtents, WhatNobodySeesAndNothingAtAllStay) {
   Sketch s;
   add_line(&s, {40, 40, 40}, {41, 40, 40});

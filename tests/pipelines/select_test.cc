@@ -127,6 +127,31 @@ TEST(Select, AnEdgeMayStandOffInSingleViewsByWhatSurfelsAreAllowed) {
   EXPECT_EQ(verdict("2dgs-sn", 0), Verdict::kMoving) << "--max-bias holds all the same";
 }
 
+TEST(Select, AnEdgeThatStandsOffInNoViewMayScatterByWhatSurfelsAreAllowed) {
+  // One edge of the cube is in ten pieces, a third of them half a pixel above it, a third below:
+  // the same in every view, or other ones of three neighbours in every view.
+  const auto verdict = [](const char* detector, bool together) {
+    const EdgeWorld w = world_of(20, [&](int i, const View&) {
+      std::vector<Polyline> seen = polylines_of(cube());
+      const Vector3d a = seen[0].front(), step = (seen[0].back() - a) / 10;
+      seen.erase(seen.begin());
+      for (int k = 0; k < 10; ++k) {
+        const Vector3d off(0, 0, ((together ? i : k) % 3 - 1) * 0.6 * kPixel);
+        seen.push_back(segment(a + k * step + off, a + (k + 1) * step + off));
+      }
+      return seen;
+    });
+    ReconstructOptions options;
+    options.detector = detector;
+    const Selection s = select_strokes(cube(), w, select_options(options));
+    EXPECT_GT(s.stats[0].rms_px, options.select.max_rms_px);
+    return s.verdicts[0];
+  };
+  EXPECT_EQ(verdict("2dgs-sn", false), Verdict::kKept);
+  EXPECT_EQ(verdict("2dgs-sn", true), Verdict::kScattered);
+  EXPECT_EQ(verdict("image", false), Verdict::kScattered);
+}
+
 TEST(Select, AStrokeThatTooFewViewsSeeIsUncovered) {
   const SelectOptions options;
   Sketch s = cube();
