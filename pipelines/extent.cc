@@ -13,7 +13,6 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kBeyond = 2;
 constexpr int kWindow = 8;  // samples, one pixel apart, by which a view is known to see the stroke
 
 // Samples of one stroke from t_first on, `step` apart in t.
@@ -35,9 +34,8 @@ std::vector<std::vector<int>> owners(const Sketch& sketch, const EdgeWorld& worl
   return owner;
 }
 
-// Last sample from the middle in direction `way` up to which the views keep seeing the stroke. A
-// gap before its present end is crossed if kBeyond times as much is seen beyond: print that crosses
-// an edge hides it for some pixels.
+// Last sample from the middle in direction `way` up to which the views keep seeing the stroke. Gaps
+// before its present end may be crossed.
 int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int stroke,
          const Run& run, int way, const ExtentOptions& options) {
   const int from = run.at(0.5), end = run.at(way > 0 ? 1 : 0);
@@ -45,7 +43,7 @@ int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int
   std::vector<int> recent(num_views);
   std::vector<std::vector<int>> history;
   int last_good = from, bad = 0;
-  int balance = 0, best = 0;
+  double balance = 0, best = 0;
   for (int k = from; k >= 0 && k < run.count; k += way) {
     const int i = run.first + k;
     std::vector<int> here;
@@ -60,10 +58,11 @@ int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int
     for (int v : here) agree += seen == 0 || 2 * recent[v] > seen;
     const bool warm = int(history.size()) >= kWindow / 2;
     const bool good = agree >= options.min_views && (!warm || agree >= options.share * active);
-    balance += good ? 1 : -kBeyond;
+    balance += good ? 1 : -options.gap_price;
     bad = good ? 0 : bad + 1;
     if (balance > best) best = balance, last_good = k;
-    if (bad >= 3 && warm && way * (end - k) <= 0) break;
+    const bool inside = options.gap_price > 0 && way * (end - k) > 0;
+    if (bad >= 3 && warm && !inside) break;
     if (bad > 0) continue;  // what ended the stroke does not tell who sees it
     for (int v : here) ++recent[v];
     history.push_back(here);

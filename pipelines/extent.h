@@ -10,13 +10,13 @@ struct ExtentOptions {
   double outward_px = 16.0;  ///< [px] how far beyond a free end is looked
   double share = 0.5;        ///< of the views that see the stroke up to here must see it here
   int min_views = 3;
+  double gap_price = 0;        ///< times a gap's length must be seen beyond it; 0: it is an end
   double min_length_px = 3.0;  ///< [px] shorter strokes are left as they are
 };
 
 /// Lets every free end (a node that one stroke holds) run or retreat to where the views stop seeing
-/// the stroke; edgels that another stroke explains better do not count. It does not retreat
-/// to a gap beyond which it is seen for twice the gap's length. Closed strokes and shared nodes
-/// stay.
+/// the stroke; edgels that another stroke explains better do not count. Of gaps inside it
+/// `gap_price` says whether they are ends. Closed strokes and shared nodes stay.
 Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOptions& options);
 
 }  // namespace sketchsplat

@@ -74,6 +74,8 @@ void list_extent(ExtentOptions* o, Fields* f) {
   f->group("Ends of strokes");
   f->add("extend", &o->outward_px, "px", 0, 1000, "How far beyond a free end is looked");
   f->add("extend-share", &o->share, "", 0.05, 1, "Share of the views that must go on seeing it");
+  f->add("gap-price", &o->gap_price, "times", 0, 100,
+         "A gap in a stroke is crossed if so much more is seen beyond it; 0: it is its end");
 }
 
 void list_optimize(OptimizeOptions* o, Fields* f) {
@@ -222,6 +224,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
          "At least --max-bias of edges that surfels tell of (--detector 2dgs-sn)");
   f->add("surfel-rms", &o->surfel_rms_px, "px", 0, 100,
          "At least --max-rms of those of them that lie still in half of the views");
+  f->add("surfel-gap-price", &o->surfel_gap_price, "times", 0, 100,
+         "At least --gap-price of edges that surfels tell of");
   list_extent(&o->extent, f);
   list_optimize(&o->optimize, f);
   list_topology(&o->topology, f);

@@ -58,6 +58,8 @@ struct ReconstructOptions : DetectionOptions {
   double surfel_bias_px = 0.4;
   /// [px] scatter of edges that surfels tell of and that lie still, if above select.max_rms_px
   double surfel_rms_px = 0.45;
+  /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
+  double surfel_gap_price = 2;
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
 };
 

@@ -102,8 +102,15 @@ PolishOptions early(const ReconstructOptions& options) {
   return polish;
 }
 
+ExtentOptions extent_options(const ReconstructOptions& options) {
+  ExtentOptions extent = options.extent;
+  if (options.detector == "2dgs-sn")
+    extent.gap_price = std::max(extent.gap_price, options.surfel_gap_price);
+  return extent;
+}
+
 Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
-  return polish(fit_extents(sketch, world, options.extent), world, early(options));
+  return polish(fit_extents(sketch, world, extent_options(options)), world, early(options));
 }
 
 // One price and one least deviation for all that is described.

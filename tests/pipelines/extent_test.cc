@@ -93,17 +93,23 @@ TEST(FitExtents, AnEndDoesNotRunIntoTheEdgelsOfAnotherStroke) {
   EXPECT_GT(fitted.nodes(0, fitted.strokes[1].begin), 0.51 - kSlack * w.footprint);
 }
 
-TEST(FitExtents, AGapInsideAStrokeIsCrossedIfMoreIsSeenBeyondThanItIsLong) {
-  for (const auto& [seen_again, whole] : {std::pair(0.76, true), std::pair(0.84, false)}) {
-    Sketch s;
-    add_line(&s, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
+TEST(FitExtents, AGapInsideAStrokeEndsItUnlessEnoughIsSeenBeyond) {
+  Sketch s;
+  add_line(&s, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
+  const auto end = [&s](double seen_again, double gap_price) {
     const EdgeWorld w = ideal_world(ring_of_views(16, kMiddle, 3),
                                     {segment({0.1, 0.5, 0.5}, {0.7, 0.5, 0.5}),
                                      segment({seen_again, 0.5, 0.5}, {0.9, 0.5, 0.5})});
-    const Sketch fitted = fit_extents(s, w, {});
+    ExtentOptions options;
+    options.gap_price = gap_price;
+    const Sketch fitted = fit_extents(s, w, options);
     EXPECT_NEAR(fitted.nodes(0, s.strokes[0].begin), 0.1, kSlack * w.footprint);
-    EXPECT_NEAR(fitted.nodes(0, s.strokes[0].end), whole ? 0.9 : 0.7, kSlack * w.footprint);
-  }
+    return fitted.nodes(0, s.strokes[0].end);
+  };
+  constexpr double kOff = 0.015;
+  EXPECT_NEAR(end(0.76, 2), 0.9, kOff) << "more than twice as much beyond";
+  EXPECT_NEAR(end(0.82, 2), 0.7, kOff) << "two thirds of it";
+  EXPECT_NEAR(end(0.76, 0), 0.7, kOff) << "every gap is an end";
 }
 
 TEST(FitExtents, WhatNobodySeesAndNothingAtAllStay) {
