@@ -154,11 +154,12 @@ class Trainer {
     Eigen::Vector3d mean = (color * weight) / std::max(1e-9, weight.sum());
     const double level = std::max(1e-3, mean.mean());
     common_ = (mean / level).cwiseMax(0.05);
+    const Eigen::VectorXd grey = color.colwise().mean();
+    const Illumination light = fit_illumination(cloud, grey, weight, bounds_);
+    field_.evenness = evenness(cloud, grey, light);
     if (options_.shading) {
-      const Eigen::VectorXd grey = color.colwise().mean();
-      field_.illumination = fit_illumination(cloud, grey, weight, bounds_);
+      field_.illumination = light;
       field_.surfels.values.bottomRows<3>() = common_.replicate(1, n);
-      field_.evenness = evenness(cloud, grey, field_.illumination);
     } else {
       field_.surfels.values.bottomRows<3>() = color;
     }

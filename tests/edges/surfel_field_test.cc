@@ -294,6 +294,21 @@ TEST(SurfelField, PicturesOfLargeObjectsAreMadeSmallerAndSmallOnesAreNot) {
   EXPECT_LT(off, 0.1);
 }
 
+TEST(SurfelField, TellsPrintFromLightWhetherColoursFollowNormalsOrNot) {
+  const Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-1.1), Eigen::Vector3d::Constant(1.1));
+  std::vector<TrainingView> striped = ball();
+  for (TrainingView& v : striped)
+    for (Image<float>& c : v.color)
+      for (size_t i = 0; i < c.data.size(); ++i) c.data[i] *= i / 8 % 2 ? 1.0f : 0.4f;
+  for (const bool shading : {true, false}) {
+    SurfelFieldOptions options;
+    options.surfels = 200, options.renderings = 6, options.side_px = 64;
+    options.shading = shading;
+    EXPECT_GT(train_surfels(ball(), box, options).evenness, kEven);
+    EXPECT_LT(train_surfels(striped, box, options).evenness, kEven);
+  }
+}
+
 TEST(SurfelPly, HoldsARowOfSixteenNumbersPerSurfel) {
   const std::string ply = surfel_ply(two_planes());
   EXPECT_NE(ply.find("element vertex 144\n"), std::string::npos);
