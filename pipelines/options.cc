@@ -223,7 +223,7 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("surfel-bias", &o->surfel_bias_px, "px", 0, 100,
          "At least --max-bias of edges that surfels tell of (--detector 2dgs-sn)");
   f->add("surfel-rms", &o->surfel_rms_px, "px", 0, 100,
-         "At least --max-rms of those of them that lie still in half of the views");
+         "At least --max-rms of edges that surfels tell of and that lie still");
   f->add("surfel-gap-price", &o->surfel_gap_price, "times", 0, 100,
          "At least --gap-price of edges that surfels tell of");
   list_extent(&o->extent, f);
