@@ -9,6 +9,7 @@
 
 #include "edges/chain.h"
 #include "edges/gradient.h"
+#include "edges/meaningful.h"
 
 namespace sketchsplat {
 namespace {
@@ -149,6 +150,7 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   const float high =
       float(std::max(options.high_floor / 255, options.high_sigma * unit * map.noise));
   chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
+  keep_meaningful(g.magnitude, options.meaning, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
   if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);
   build_lookup(&map, options.reach_px);
@@ -168,6 +170,30 @@ std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep
     }
   return kept;
 }
+
+namespace {
+
+// Chessboard distance to the nearest pixel with an edgel, negative, where there is none: forward and
+// backward (Rosenfeld, Pfaltz: Sequential operations in digital picture processing, JACM 1966).
+void fill_distances(EdgelMap* map) {
+  const int w = map->window_width, h = map->window_height;
+  const auto far = [&](int x, int y) {  // minus the distance; 0 at an edgel
+    return x < 0 || y < 0 || x >= w || y >= h ? -(w + h)
+                                              : std::min(0, map->nearest[size_t(y) * w + x]);
+  };
+  for (int way = 1; way >= -1; way -= 2)
+    for (int i = 0; i < h; ++i)
+      for (int j = 0; j < w; ++j) {
+        const int y = way > 0 ? i : h - 1 - i, x = way > 0 ? j : w - 1 - j;
+        int& here = map->nearest[size_t(y) * w + x];
+        if (here >= 0) continue;
+        const int before = std::max({far(x - way, y), far(x - 1, y - way), far(x, y - way),
+                                     far(x + 1, y - way)});
+        here = way > 0 ? before - 1 : std::max(here, before - 1);
+      }
+}
+
+}  // namespace
 
 void build_lookup(EdgelMap* map, double reach_px) {
   map->nearest.clear();
@@ -196,6 +222,7 @@ void build_lookup(EdgelMap* map, double reach_px) {
         if (d < best[k]) best[k] = d, map->nearest[k] = i;
       }
   }
+  fill_distances(map);
 }
 
 Image<float> draw_edge_map(const EdgelMap& map, double sigma_px) {

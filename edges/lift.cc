@@ -115,6 +115,21 @@ bool Sweeper::make_ray(int view, const Edgel& e, Ray* ray) const {
   return true;
 }
 
+// The first k after this one at which a + k b (homogeneous) lies more than `reach` pixels (chessboard)
+// from (u, v), where it is now.
+int step_over(const Eigen::Vector3f& a, const Eigen::Vector3f& b, int k, float u, float v,
+              float reach) {
+  if (reach < 1) return k + 1;
+  float next = 1e9f;
+  for (const float way : {-reach, reach}) {
+    const float at_u = ((u + way) * a.z() - a.x()) / (b.x() - (u + way) * b.z());
+    const float at_v = ((v + way) * a.z() - a.y()) / (b.y() - (v + way) * b.z());
+    if (at_u > k) next = std::min(next, at_u);
+    if (at_v > k) next = std::min(next, at_v);
+  }
+  return std::max(k + 1, int(next));
+}
+
 void Sweeper::vote(int view, int index, int other, const Ray& ray,
                    std::vector<float>* score) const {
   const EdgelMap& map = world_.maps[other];
@@ -131,8 +146,11 @@ void Sweeper::vote(int view, int index, int other, const Ray& ray,
     const float z = a.z() + k * b.z();
     if (z <= 0) continue;
     const float u = (a.x() + k * b.x()) / z, v = (a.y() + k * b.y()) / z;
-    const int j = map.nearest_at(u, v);
-    if (j < 0) continue;
+    const int j = map.nearest_or_far(u, v);
+    if (j < 0) {
+      k = step_over(a, b, k, u, v, float(-j - 1)) - 1;
+      continue;
+    }
     const Edgel& e = map.edgels[j];
     const float d = (u - e.x) * e.nx + (v - e.y) * e.ny;
     if (std::abs(d) > reach) continue;

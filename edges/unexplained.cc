@@ -10,6 +10,8 @@ namespace {
 constexpr int kBeside = 2;         // edgels of a chain beside the one that a sample finds
 constexpr double kLookupPx = 4.0;  // as the detectors'
 
+}  // namespace
+
 void explain_in_view(const EdgeWorld& world, int view, const CurvePoints& samples,
                      const ExplainOptions& options, std::vector<char>* explained) {
   const View& v = world.views[view];
@@ -33,8 +35,6 @@ void explain_in_view(const EdgeWorld& world, int view, const CurvePoints& sample
     }
   }
 }
-
-}  // namespace
 
 EdgelFlags no_edgels(const EdgeWorld& world) {
   EdgelFlags out;

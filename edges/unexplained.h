@@ -22,6 +22,10 @@ struct ExplainOptions {
 void explain(const EdgeWorld& world, const CurvePoints& samples, const ExplainOptions& options,
              EdgelFlags* explained);
 
+/// The same in one view.
+void explain_in_view(const EdgeWorld& world, int view, const CurvePoints& samples,
+                     const ExplainOptions& options, std::vector<char>* explained);
+
 /// The same views with those edgels alone that are not flagged, in runs of at least `min_chain`:
 /// shorter rests are corners and noise. Masks are left out, the hull stays.
 EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int min_chain);

@@ -114,6 +114,10 @@ void list_detect(DetectOptions* o, Fields* f) {
   f->add("detect-low-floor", &o->low_floor, "grey levels per px", 0, 255,
          "Smallest gradient that continues it");
   f->add("detect-min-chain", &o->min_chain, "px", 1, 1000, "Shorter edges are dropped");
+  f->add("detect-false", &o->meaning.most_false, "per image", 0, 1e12,
+         "Edges that texture would make more often are dropped; 0: none");
+  f->add("detect-most", &o->meaning.most_sides, "sides of the image", 0, 1e6,
+         "Edgels that are kept at the most, the most meaningful first; 0: all");
 }
 
 void list_maps(MapOptions* o, Fields* f) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "edges/rim.h"
 #include "edges/unexplained.h"
 #include "pipelines/observe.h"
 #include "topology/description.h"
@@ -133,6 +134,27 @@ Verdict judge(const StrokeStats& s, double seen, double sharp, double sigma,
   return Verdict::kKept;
 }
 
+// Which strokes are rims of round surfaces; flags what the rims explain in all views.
+std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& world,
+                               const SelectOptions& options, EdgelFlags* explained) {
+  const int n = int(o.strokes.size());
+  RimOptions look;
+  look.sigma_px = std::max(look.sigma_px, o.matches.sigma_px);
+  std::vector<Rim> rims(n);
+  std::vector<char> round(n);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < n; ++i) {
+    if (judge_extent(o.strokes[i], options) != Verdict::kKept) continue;
+    rims[i] = fit_rim(world, points_of(o, i), look);
+    round[i] = rims[i].is_round(world.footprint);
+  }
+  ExplainOptions near;
+  near.reach_px = 1;  // edges may run beside a rim
+  for (int i = 0; i < n; ++i)
+    if (round[i]) explain_rim(world, points_of(o, i), rims[i], near, explained);
+  return round;
+}
+
 }  // namespace
 
 const char* verdict_name(Verdict verdict) {
@@ -177,13 +199,15 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     for (int n : {s.begin, s.end}) sum += n >= 0 && degree[n] == 1 ? node : 0;
     return sum;
   };
+  const std::vector<char> round = explain_rims(o, world, options, &owned);
+  explained = owned;
   for (int i : order) {
     Verdict& verdict = result.verdicts[i];
     const auto judge_by = [&](const EdgelFlags& others) {
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
       verdict = judge(result.stats[i], seen[i], sharp, sigma, options);
     };
-    verdict = judge_extent(o.strokes[i], options);
+    verdict = round[i] ? Verdict::kMoving : judge_extent(o.strokes[i], options);
     if (verdict != Verdict::kKept) continue;
     // Where two edges run side by side, the better one has explained its edgels already.
     const double places = own_cover(o, i, options.min_views, owned) * o.strokes[i].samples;

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "edges/meaningful.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace sketchsplat {
+namespace {
+
+Picture grey_picture(int w, int h, float value) {
+  Picture p;
+  p.red = p.green = p.blue = Image<float>(w, h, value);
+  return p;
+}
+
+void add(Picture* p, int x, int y, double v) {
+  p->red.at(x, y) += float(v), p->green.at(x, y) += float(v), p->blue.at(x, y) += float(v);
+}
+
+void add_noise(Picture* p, double sigma) {
+  std::mt19937 rng(3);
+  std::normal_distribution<double> normal(0, sigma);
+  for (int y = 0; y < p->height(); ++y)
+    for (int x = 0; x < p->width(); ++x) add(p, x, y, normal(rng));
+}
+
+// Bright and dark blobs of two pixels, as speckled paint has them.
+void add_speckles(Picture* p, int count, double contrast) {
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<double> u(0, p->width()), v(0, p->height()), sign(-1, 1);
+  for (int k = 0; k < count; ++k) {
+    const double x0 = u(rng), y0 = v(rng), s = contrast * sign(rng);
+    for (int y = std::max(0, int(y0) - 5); y < std::min(p->height(), int(y0) + 6); ++y)
+      for (int x = std::max(0, int(x0) - 5); x < std::min(p->width(), int(x0) + 6); ++x)
+        add(p, x, y, s * std::exp(-0.5 * (std::pow(x - x0, 2) + std::pow(y - y0, 2)) / 2.5));
+  }
+}
+
+void add_step(Picture* p, double height) {  // a slanted line through the whole picture
+  for (int y = 0; y < p->height(); ++y)
+    for (int x = 0; x < p->width(); ++x)
+      add(p, x, y, height / (1 + std::exp(-(x - 0.3 * y - 40) / 0.5)));
+}
+
+void add_disk(Picture* p, double x0, double y0, double radius, double height) {
+  for (int y = 0; y < p->height(); ++y)
+    for (int x = 0; x < p->width(); ++x)
+      add(p, x, y, height / (1 + std::exp((std::hypot(x - x0, y - y0) - radius) / 0.4)));
+}
+
+int on_step(const EdgelMap& map) {
+  int n = 0;
+  for (const Edgel& e : map.edgels) n += std::abs(e.x - 0.3 * e.y - 40) < 1.5;
+  return n;
+}
+
+DetectOptions everything() {
+  DetectOptions options;
+  options.meaning.most_false = options.meaning.most_sides = 0;
+  return options;
+}
+
+TEST(Meaningful, AnEdgeInSpecklesOfItsOwnContrastStaysAndTheSpecklesGo) {
+  Picture p = grey_picture(240, 240, 0.5f);
+  add_speckles(&p, 1500, 0.15);
+  add_step(&p, 0.15);
+  const EdgelMap all = detect_edges(p, everything()), kept = detect_edges(p, {});
+  ASSERT_GT(all.edgels.size(), 3000u);
+  EXPECT_GE(on_step(kept), 0.8 * 240 * 1.04);
+  EXPECT_LE(kept.edgels.size() - on_step(kept), 0.05 * all.edgels.size());
+}
+
+TEST(Meaningful, WhatNoiseMakesAtALowThresholdGoes) {
+  Picture p = grey_picture(300, 300, 0.5f);
+  add_noise(&p, 4.0 / 255);
+  DetectOptions low = everything();
+  low.high_sigma = low.low_sigma = 2;
+  ASSERT_GT(detect_edges(p, low).edgels.size(), 1500u);
+  low.meaning.most_false = MeaningOptions().most_false;
+  EXPECT_LE(detect_edges(p, low).num_chains(), 10);
+}
+
+TEST(Meaningful, SmallHolesOfACleanPictureStay) {
+  for (const double radius : {4.0, 6.0, 10.0}) {
+    Picture p = grey_picture(200, 200, 0.5f);
+    for (int k = 0; k < 4; ++k) add_disk(&p, 40 + 40 * k, 60 + 20 * k, radius, -0.1);
+    add_noise(&p, 2.0 / 255);
+    EXPECT_EQ(detect_edges(p, {}).edgels.size(), detect_edges(p, everything()).edgels.size())
+        << radius;
+  }
+}
+
+TEST(Meaningful, ChainsAreNumberedAndNoneIsLessMeaningfulThanAllowed) {
+  Picture p = grey_picture(240, 240, 0.5f);
+  add_speckles(&p, 1500, 0.15);
+  add_step(&p, 0.15);
+  for (const double most : {1.0, 1e4}) {
+    DetectOptions options;
+    options.meaning.most_false = most;
+    const EdgelMap map = detect_edges(p, options);
+    ASSERT_EQ(int(map.meaning.size()), map.num_chains());
+    for (const float m : map.meaning) EXPECT_GE(m, -std::log10(most));
+  }
+}
+
+TEST(Meaningful, ABudgetKeepsTheLongSmoothEdgeFirst) {
+  Picture p = grey_picture(240, 240, 0.5f);
+  add_speckles(&p, 1500, 0.15);
+  add_step(&p, 0.15);
+  DetectOptions options = everything();
+  options.meaning.most_sides = 2;
+  const EdgelMap map = detect_edges(p, options);
+  EXPECT_LE(map.edgels.size(), 480u);
+  EXPECT_GE(on_step(map), 0.8 * 240 * 1.04);
+}
+
+TEST(Meaningful, AnEmptyMapStaysEmpty) {
+  EdgelMap map;
+  map.width = map.height = 20;
+  keep_meaningful(cv::Mat1f::zeros(20, 20), {}, &map);
+  EXPECT_EQ(map.num_chains(), 0);
+}
+
+TEST(Lookup, FarPixelsKnowHowFarTheNearestEdgelIsAtLeast) {
+  Picture p = grey_picture(120, 90, 0.5f);
+  add_disk(&p, 40, 50, 12, 0.3);
+  const EdgelMap map = detect_edges(p, {});
+  const auto is_free = [&](int x, int y) { return map.nearest_at(x, y) < 0; };
+  for (int y = -30; y < 130; y += 7)
+    for (int x = -30; x < 160; x += 7) {
+      const int far = -map.nearest_or_far(x, y);
+      if (!is_free(x, y)) continue;
+      ASSERT_GE(far, 1);
+      int nearest = 1;  // chessboard, by looking
+      for (bool free = true; nearest < 200; ++nearest) {
+        for (int d = -nearest; d <= nearest && free; ++d)
+          free = is_free(x + d, y - nearest) && is_free(x + d, y + nearest) &&
+                 is_free(x - nearest, y + d) && is_free(x + nearest, y + d);
+        if (!free) break;
+      }
+      EXPECT_LE(far, nearest) << x << " " << y;
+      if (x >= map.x0 && y >= map.y0 && x < map.x0 + map.window_width &&
+          y < map.y0 + map.window_height) {
+        EXPECT_EQ(far, nearest) << x << " " << y;
+      }
+    }
+}
+
+}  // namespace
+}  // namespace sketchsplat
