@@ -167,6 +167,7 @@ std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep
       if (end == begin || end - begin < min_chain) continue;
       for (int k = begin; k < end; ++k) kept.push_back(k), to->edgels.push_back(from.edgels[k]);
       to->chain.push_back(int(to->edgels.size()));
+      if (!from.meaning.empty()) to->meaning.push_back(from.meaning[c]);
     }
   return kept;
 }
