@@ -92,6 +92,26 @@ Eigen::Matrix2d Lens::jacobian(const Eigen::Vector2d& ideal) const {
   return J;
 }
 
+Eigen::Matrix<double, 2, 8> Lens::terms_jacobian(const Eigen::Vector2d& ideal) const {
+  Eigen::Matrix<double, 2, 8> J = Eigen::Matrix<double, 2, 8>::Zero();
+  const double x = ideal.x(), y = ideal.y(), q = x * x + y * y;
+  if (model_ == LensModel::kOpencvFisheye) {
+    const double r = std::sqrt(q), angle = std::atan(r), t = angle * angle;
+    const Eigen::Vector2d unit = q < 1e-16 ? ideal : Eigen::Vector2d(ideal * (angle / r));
+    J.col(0) = unit * t, J.col(1) = unit * t * t;
+    J.col(4) = unit * t * t * t, J.col(5) = unit * t * t * t * t;
+    return J;
+  }
+  const Terms& k = terms_;
+  const double n = 1 + q * (k.k1 + q * (k.k2 + q * k.k3));
+  const double d = 1 + q * (k.k4 + q * (k.k5 + q * k.k6));
+  J.col(0) = ideal * (q / d), J.col(1) = q * J.col(0), J.col(4) = q * J.col(1);
+  J.col(5) = -n / d * J.col(0), J.col(6) = q * J.col(5), J.col(7) = q * J.col(6);
+  J.col(2) << 2 * x * y, q + 2 * y * y;
+  J.col(3) << q + 2 * x * x, 2 * x * y;
+  return J;
+}
+
 bool Lens::undistort(const Eigen::Vector2d& distorted, Eigen::Vector2d* ideal) const {
   if (identity_) {
     *ideal = distorted;

@@ -68,6 +68,9 @@ class Lens {
   }
   /// d(distorted) / d(ideal).
   Eigen::Matrix2d jacobian(const Eigen::Vector2d& ideal) const;
+  /// d(distorted) / d(k1, k2, p1, p2, k3, k4, k5, k6); of OPENCV_FISHEYE, p1, p2, k5 and k6 are
+  /// nothing.
+  Eigen::Matrix<double, 2, 8> terms_jacobian(const Eigen::Vector2d& ideal) const;
   /// The ideal point that is drawn at a distorted one, to 1e-12 (Newton). False if none in the
   /// range is.
   bool undistort(const Eigen::Vector2d& distorted, Eigen::Vector2d* ideal) const;

@@ -28,6 +28,9 @@ struct EdgeWorld {
 /// remains.
 EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps);
 
+/// EdgeWorld::plane_normal of a view.
+Eigen::Matrix3Xf plane_normals(const View& view, const EdgelMap& map);
+
 /// Points on edges in space.
 struct EdgePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();

@@ -83,6 +83,18 @@ Eigen::AlignedBox3d carve(const std::vector<View>& views, const std::vector<Pixe
 
 }  // namespace
 
+Eigen::Matrix3Xf plane_normals(const View& view, const EdgelMap& map) {
+  const Eigen::Matrix3d world_from_cam = view.cam_from_world.rotation.transpose();
+  Eigen::Matrix3Xf normals(3, map.edgels.size());
+  for (size_t k = 0; k < map.edgels.size(); ++k) {
+    const Edgel& e = map.edgels[k];
+    const Eigen::Vector3d along(-e.ny / view.camera.fx, e.nx / view.camera.fy, 0);
+    normals.col(k) =
+        (world_from_cam * view.camera.ray({e.x, e.y}).cross(along)).normalized().cast<float>();
+  }
+  return normals;
+}
+
 EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
   EdgeWorld world;
   world.views = std::move(views);
@@ -100,20 +112,11 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
   for (int pass = 0; pass < 2 && reach > 0; ++pass) cube = carve(world.views, boxes, cube, 2.0);
   if (reach > 0) world.bounds = cube;
   std::vector<double> footprint;
-  world.plane_normal.resize(world.views.size());
   for (size_t i = 0; i < world.views.size(); ++i) {
     const View& v = world.views[i];
     const double z = (v.cam_from_world * world.bounds.center()).z();
     if (z > 0 && !world.bounds.isEmpty()) footprint.push_back(z / v.camera.fx);
-    const Eigen::Matrix3d world_from_cam = v.cam_from_world.rotation.transpose();
-    Eigen::Matrix3Xf& normals = world.plane_normal[i];
-    normals.resize(3, world.maps[i].edgels.size());
-    for (size_t k = 0; k < world.maps[i].edgels.size(); ++k) {
-      const Edgel& e = world.maps[i].edgels[k];
-      const Eigen::Vector3d along(-e.ny / v.camera.fx, e.nx / v.camera.fy, 0);
-      normals.col(k) =
-          (world_from_cam * v.camera.ray({e.x, e.y}).cross(along)).normalized().cast<float>();
-    }
+    world.plane_normal.push_back(plane_normals(v, world.maps[i]));
   }
   if (!footprint.empty()) {
     std::nth_element(footprint.begin(), footprint.begin() + footprint.size() / 2, footprint.end());

@@ -5,6 +5,7 @@
 
 #include "datasets/errors.h"
 #include "pipelines/detectors.h"
+#include "pipelines/refine_poses.h"
 #include "pipelines/stages.h"
 
 namespace sketchsplat {
@@ -21,6 +22,7 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
   const EdgeWorld world = detect_scene(scene, detector.get(), &report, progress);
   const std::vector<EdgePoint> points = lift_scene(world, options, &report, progress);
   Sketch sketch = fit_strokes(points, world, options, &report, progress);
+  probe_poses(sketch, world, options, progress); return {};
   sketch = drop_print(sketch, world, *detector, &report, progress);
 
   const std::vector<EdgeTarget> targets = make_targets(world, options.optimize);

@@ -37,6 +37,16 @@ Eigen::Matrix<double, 12, 1> pull_back(StrokeKind kind, const ControlPoints& c, 
 
 }  // namespace
 
+PointJacobian point_jacobian(StrokeKind kind, const ControlPoints& c, double t) {
+  Vec3<Jet12> control[4], position, derivative;
+  for (int i = 0; i < c.count; ++i)
+    for (int k = 0; k < 3; ++k) control[i][k] = Jet12(c.p[i][k], 3 * i + k);
+  evaluate_curve<Jet12>(kind, control, t, &position, &derivative);
+  PointJacobian J;
+  for (int k = 0; k < 3; ++k) J.row(k) = position[k].v.transpose();
+  return J;
+}
+
 SampleLayout plan_samples(const Sketch& sketch, double spacing) {
   SampleLayout layout;
   layout.first.push_back(0);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "edges/recast.h"
+
+#include <utility>
+
+#include "edges/undistort.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr double kLookupPx = 4.0;  // as the detectors'
+constexpr int kShortest = 3;       // edgels that still have a direction
+
+EdgelMap coarser(const EdgelMap& map, int factor) {
+  EdgelMap out;
+  out.width = (map.width + factor - 1) / factor, out.height = (map.height + factor - 1) / factor;
+  out.noise = map.noise;
+  out.chain.push_back(0);
+  for (int c = 0; c < map.num_chains(); ++c) {
+    if (map.chain[c + 1] - map.chain[c] < kShortest * factor) continue;
+    for (int i = map.chain[c] + factor / 2; i < map.chain[c + 1]; i += factor) {
+      Edgel e = map.edgels[i];
+      e.x = (e.x + 0.5f) / float(factor) - 0.5f, e.y = (e.y + 0.5f) / float(factor) - 0.5f;
+      e.width /= float(factor), e.strength *= float(factor);
+      out.edgels.push_back(e);
+    }
+    out.chain.push_back(int(out.edgels.size()));
+    if (!map.meaning.empty()) out.meaning.push_back(map.meaning[c]);
+  }
+  build_lookup(&out, kLookupPx);
+  return out;
+}
+
+}  // namespace
+
+EdgeWorld recast(EdgeWorld world, std::vector<View> views) {
+  const int n = int(world.views.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < n; ++v) {
+    const View& from = world.views[v];
+    EdgelMap& map = world.maps[v];
+    if (!from.lens.is_identity() || !views[v].lens.is_identity())
+      map = undistort_edgels(distort_edgels(std::move(map), from), views[v], 1, kLookupPx);
+    world.plane_normal[v] = plane_normals(views[v], map);
+  }
+  world.views = std::move(views);
+  return world;
+}
+
+EdgeWorld coarser(const EdgeWorld& world, int factor) {
+  const int n = int(world.views.size());
+  EdgeWorld out;
+  out.views = world.views;
+  out.bounds = world.bounds;
+  out.footprint = world.footprint * factor;
+  out.hull = world.hull;
+  out.maps.resize(n);
+  out.plane_normal.resize(n);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < n; ++v) {
+    out.views[v].camera = world.views[v].camera.shrunk(factor);
+    out.maps[v] = coarser(world.maps[v], factor);
+    out.plane_normal[v] = plane_normals(out.views[v], out.maps[v]);
+  }
+  return out;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "pipelines/camera_unknowns.h"
+#include "pipelines/observe.h"
+
+namespace sketchsplat {
+
+/// Cameras and strokes that agree best with matched edgels, and how well.
+struct CameraFit {
+  std::vector<View> views;
+  Sketch sketch;
+  double scatter_px = 0;   ///< of single edgels about the offset of their stroke in their view
+  double before_px = 0;    ///< root mean square of the offsets of strokes in views before the fit
+  double after_px = 0;     ///< and after it
+  int offsets = 0;         ///< number of these: a stroke in a view
+  int unknowns = 0;        ///< of the cameras
+  std::vector<double> focal, focal_sigma;  ///< per shared camera: relative change, its standard
+                                           ///< deviation if edgels err as they scatter
+  std::vector<double> radius_px;           ///< per view: of the object's image
+};
+
+/// Moves cameras and strokes, by Levenberg and Marquardt's method, so that the squared distances of
+/// the edgels from the images of the strokes become small: every edgel with the biweight of its match
+/// and as much less as its stroke has more of them in its view, where they err alike; strokes
+/// eliminated first (Schur's complement). Distances are those in the image, behind the lens, from the
+/// tangent of the stroke's image; strokes that share a node are free of one another, and their ends
+/// meet in the middle at last. The gauge is held by the prior about `stated`, from which alone it
+/// counts; world.views, which the observation was made with, are where the search begins.
+CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
+                      const std::vector<View>& stated, const CameraPrior& prior, int steps);
+
+}  // namespace sketchsplat
