@@ -61,12 +61,8 @@ void list_segment(SegmentOptions* o, Fields* f) {
 void list_select(SelectOptions* o, Fields* f) {
   f->group("Choosing strokes");
   f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
-  f->add("min-cover", &o->min_cover, "", 0, 1, "Share of its length that enough views see");
-  f->add("max-rms", &o->max_rms_px, "px", 0.01, 100,
-         "Scatter of its edgels above that of the scene");
-  f->add("max-bias", &o->max_bias_px, "px", 0.01, 100, "Offset from view to view");
-  f->add("max-width", &o->max_width, "times sharp", 1, 100, "Blur of its edges");
-  f->add("min-seen", &o->min_seen, "", 0, 1, "Share of the sure sightings with an edge");
+  f->add("min-nats", &o->least_nats, "nat", -1000, 1000,
+         "Logarithm of the likelihood ratio of an edge and of none that a stroke needs");
   f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
 }
 
@@ -224,10 +220,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("joint-sigma", &o->rechain.sigma_px, "px", 0.01, 10,
          "Least standard deviation of what all views say of a place");
   list_select(&o->select, f);
-  f->add("surfel-bias", &o->surfel_bias_px, "px", 0, 100,
-         "At least --max-bias of edges that surfels tell of (--detector 2dgs-sn)");
-  f->add("surfel-rms", &o->surfel_rms_px, "px", 0, 100,
-         "At least --max-rms of edges that surfels tell of and that lie still");
+  f->add("surfel-sigma", &o->surfel_sigma_px, "px", 0.01, 100,
+         "Scatter of edges that surfels tell of about their stroke");
   f->add("surfel-gap-price", &o->surfel_gap_price, "times", 0, 100,
          "At least --gap-price of edges that surfels tell of");
   list_extent(&o->extent, f);

@@ -54,10 +54,8 @@ struct ReconstructOptions : DetectionOptions {
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
   bool second_look = true;   ///< at the edgels that no stroke explains
   bool final_polish = true;  ///< end on the edgels themselves
-  /// [px] offset from view to view of edges that surfels alone tell of, if above select.max_bias_px
-  double surfel_bias_px = 0.4;
-  /// [px] scatter of edges that surfels tell of and that lie still, if above select.max_rms_px
-  double surfel_rms_px = 0.45;
+  /// [px] standard deviation of the edgels of surfels about their edge, see EvidenceModel
+  double surfel_sigma_px = 0.25;
   /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
   double surfel_gap_price = 2;
   double min_confidence = 0;  ///< probability below which a stroke is left out at last

@@ -87,10 +87,10 @@ void note_verdicts(const Sketch& sketch, const Selection& selection, Progress* p
     char line[200];
     std::snprintf(line, sizeof line,
                   "%s %d is %s: %.0f px, %d views, scatter %.2f px, moves %.2f px, width %.2f px, "
-                  "cover %.2f, seen %.2f",
+                  "cover %.2f, %.1f nat",
                   kind_name(sketch.strokes[i].kind), i, verdict_name(selection.verdicts[i]),
                   s.length_px, s.views, s.rms_px, s.bias_px, s.width_px, s.cover,
-                  selection.seen[i]);
+                  selection.nats[i]);
     progress->note(line);
   }
 }
@@ -164,13 +164,8 @@ SelectOptions select_options(const ReconstructOptions& options) {
   SelectOptions select = options.select;
   select.price = options.segment.price;
   select.place_sigma_px = options.rechain.sigma_px;
-  // Surfels say less exactly than pictures where an edge is, and their detector has left out the
-  // contours of round surfaces: a stroke may stand off further in single views. Print that runs up
-  // to an edge scatters its edgels, but moves it in no view.
-  if (options.detector == "2dgs-sn") {
-    select.max_bias_px = std::max(select.max_bias_px, options.surfel_bias_px);
-    select.still_rms_px = options.surfel_rms_px;
-  }
+  // Surfels say less exactly than pictures where an edge is.
+  if (options.detector == "2dgs-sn") select.evidence.least_sigma_px = options.surfel_sigma_px;
   return select;
 }
 
@@ -266,9 +261,7 @@ Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
   std::vector<bool> keep(both.size(), true);
   int added = 0;
   for (int i = sketch.size(); i < both.size(); ++i) {
-    // Most of what is left are contours. Some lie still by chance, so stillness is no excuse here.
-    const bool unseen = chosen.seen[i] >= 0 && chosen.seen[i] < options.select.min_seen;
-    keep[i] = chosen.verdicts[i] == Verdict::kKept && !unseen &&
+    keep[i] = chosen.verdicts[i] == Verdict::kKept &&
               chosen.stats[i].length_px >= kLonger * options.select.min_length_px;
     added += keep[i];
   }
