@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/errors.h"
+#include "edges/focus.h"
 #include "edges/link.h"
 #include "edges/unexplained.h"
 #include "pipelines/confidence.h"
@@ -20,6 +21,10 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kFewestViews = 3;
+constexpr double kCoarseSides = 6;  // of the picture: edgels among which the object is looked for
+constexpr double kCoarser = 4;      // times the stride at which they are lifted
+constexpr int kCoarseViews = 16;    // that score their depths
+constexpr double kBeyond = 1.5;     // times what a view sees: bounds without masks
 constexpr int kSecondViews = 3;      // that agree on a point where nothing else is
 constexpr int kShortestRest = 8;     // edgels: shorter rests of chains are corners and noise
 constexpr double kLonger = 3;        // times the shortest stroke: the shortest that comes late
@@ -28,8 +33,17 @@ constexpr double kSmoother = 0.1;    // standard deviation of smooth joints at l
 
 }  // namespace
 
-EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report,
-                       Progress* progress) {
+namespace {
+
+double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
+  const double sides = options.detect.meaning.most_sides;
+  return sides > 0 ? sides * std::sqrt(double(map.width) * map.height) : INFINITY;
+}
+
+}  // namespace
+
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const ReconstructOptions& options,
+                       RunReport* report, Progress* progress) {
   std::vector<Detection> found = detect_all(scene, detector, report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
@@ -48,7 +62,29 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report
   report->counts.push_back({"views", double(views.size())});
   report->counts.push_back({"edgels", double(edgels)});
   Stage stage("hull", 0, report, progress);
+  for (EdgelMap& map : maps)
+    if (!map.mask.empty()) map = most_meaningful(map, most_edgels(map, options));
   return make_edge_world(std::move(views), std::move(maps));
+}
+
+EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
+                          RunReport* report, Progress* progress) {
+  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
+                                  [](const EdgelMap& m) { return !m.mask.empty(); });
+  if (masked) return world;
+  Stage stage("object", 0, report, progress);
+  const EdgeWorld coarse = focused(world, {}, kCoarseSides);
+  LiftOptions lift = options.lift;
+  lift.stride_px *= kCoarser;
+  lift.sweep_views = std::min(lift.sweep_views, kCoarseViews);
+  std::vector<Eigen::Vector3d> points, cameras;
+  for (const EdgePoint& p : lift_edges(coarse, lift)) points.push_back(p.position);
+  for (const View& v : world.views) cameras.push_back(v.center_in_world());
+  const ObjectRegion object =
+      find_object(points, cameras, meeting_point(world.views),
+                  0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, {});
+  stage.result(object.table ? "on a table" : "no table");
+  return focused(world, object, options.detect.meaning.most_sides);
 }
 
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
