@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -28,8 +29,12 @@ Scene open_views(const ReconstructArguments& arguments, const CommonOptions& com
     scene = open_scene(arguments.scene, arguments.format);
   } else {
     prepare_output_folder(arguments.out);
+    std::error_code none;
+    if (std::filesystem::equivalent(arguments.images, arguments.out, none))
+      throw UsageError("--out must be another folder than --images: it gets pictures, too");
     const std::string folder = arguments.out + "/colmap";
-    find_cameras(arguments.images, folder, common.threads, report, progress);
+    find_cameras(arguments.images, {arguments.out, arguments.masks}, folder, common.threads, report,
+                 progress);
     scene = open_scene(folder, "colmap");
     scene.folder = arguments.images;  // that is how users and files call it
   }
