@@ -8,6 +8,7 @@
 #include "datasets/errors.h"
 #include "datasets/geometry_maps.h"
 #include "datasets/scene.h"
+#include "edges/undistort.h"
 #include "eval/edge_maps.h"
 #include "eval/map_errors.h"
 #include "pipelines/geometry_files.h"
@@ -46,15 +47,18 @@ std::string map_folder(const DetectArguments& arguments) {
 void write_map(const View& view, const EdgelMap& map, const DetectArguments& arguments) {
   // Edge maps are PNG, whatever the picture was.
   const std::string name = std::filesystem::path(view.name).replace_extension(".png").string();
-  write_png(map_folder(arguments) + "/" + name, draw_edge_map(map, arguments.ridge_px));
+  write_png(map_folder(arguments) + "/" + name,
+            draw_edge_map(distort_edgels(map, view), arguments.ridge_px));
 }
 
 EdgeMapScore score_view(const Scene& scene, const View& view, const EdgelMap& map) {
   const std::string folder = scene.folder + "/edges_visible";
   const std::string path = file_of_view(folder, view, ".json");
   if (path.empty()) throw InputError(folder, "the true edges of " + view.name + " (.json)", "none");
-  Eigen::Matrix2Xd points(2, map.edgels.size());
-  for (size_t i = 0; i < map.edgels.size(); ++i) points.col(i) << map.edgels[i].x, map.edgels[i].y;
+  const EdgelMap seen = distort_edgels(map, view);
+  Eigen::Matrix2Xd points(2, seen.edgels.size());
+  for (size_t i = 0; i < seen.edgels.size(); ++i)
+    points.col(i) << seen.edgels[i].x, seen.edgels[i].y;
   return score_edge_points(points, read_edge_polylines(path), kTolerance);
 }
 
