@@ -277,22 +277,37 @@ void transform(const Eigen::Affine3d& unit_from_room, PhotoRoom* room) {
 
 }  // namespace
 
-Color PhotoRoom::albedo(const Vector3f& point, int face, float footprint) const {
+Vector2f PhotoRoom::place_of(const Vector3f& point, int face) const {
   const RoomFace& f = faces[face];
   const Vector3f x = point - f.origin;
   Vector2f place(f.u.dot(x), f.v.dot(x));
   if (f.radius > 0) place.x() = f.radius * std::atan2(f.v.cross(f.u).dot(x), f.u.dot(x));
-  for (const Card& card : f.cards) {
-    const Vector2f from = place - card.centre;
-    const Vector2f at(card.along.dot(from), card.along.x() * from.y() - card.along.y() * from.x());
-    if ((at.cwiseAbs().array() >= card.half.array()).any()) continue;
-    if ((at.cwiseAbs().array() >= card.half.array() - card.margin).any()) return card.pattern.light;
-    Vector2f inside = at + card.half;
-    if (card.pattern.kind == PatternKind::kBitmap)
-      inside = inside.cwiseQuotient(2 * card.half);
-    return card.pattern.at(inside, footprint);
+  return place;
+}
+
+const Card* PhotoRoom::card_at(const Vector2f& place, int face, Vector2f* inside) const {
+  for (const Card& card : faces[face].cards) {
+    *inside = card.inside(place);
+    if (inside->minCoeff() >= 0 && (inside->array() < 2 * card.half.array()).all()) return &card;
   }
-  return f.pattern.at(place, footprint);
+  return nullptr;
+}
+
+Color PhotoRoom::albedo(const Vector3f& point, int face, float footprint) const {
+  const Vector2f place = place_of(point, face);
+  Vector2f at;
+  const Card* card = card_at(place, face, &at);
+  if (!card) return faces[face].pattern.at(place, footprint);
+  const Vector2f from_middle = (at - card->half).cwiseAbs();
+  if ((from_middle.array() >= card->half.array() - card->margin).any()) return card->pattern.light;
+  if (card->pattern.kind == PatternKind::kBitmap) at = at.cwiseQuotient(2 * card->half);
+  return card->pattern.at(at, footprint);
+}
+
+PatternKind PhotoRoom::kind_at(const Vector3f& point, int face) const {
+  Vector2f inside;
+  const Card* card = card_at(place_of(point, face), face, &inside);
+  return card ? card->pattern.kind : faces[face].pattern.kind;
 }
 
 PhotoRoom make_room(const PhotoOptions& options, const std::vector<Vector3f>& part,

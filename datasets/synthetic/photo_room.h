@@ -21,6 +21,12 @@ struct Card {
   Eigen::Vector2f half;           ///< sides
   Pattern pattern;
   float margin = 0;  ///< blank border
+
+  /// A place of the face, from the card's first corner along its sides.
+  Eigen::Vector2f inside(const Eigen::Vector2f& place) const {
+    const Eigen::Vector2f from = place - centre;
+    return half + Eigen::Vector2f(along.dot(from), along.x() * from.y() - along.y() * from.x());
+  }
 };
 
 /// What a face of the room looks like. A place on it: (u . x, v . x) of x = point - origin; around a
@@ -51,6 +57,12 @@ struct PhotoRoom {
   Eigen::Vector3d up() const { return unit_from_room.linear().col(2); }
   /// Share of the light that a place sends back; `footprint`: of a pixel.
   Color albedo(const Eigen::Vector3f& point, int face, float footprint) const;
+  /// What is printed there.
+  PatternKind kind_at(const Eigen::Vector3f& point, int face) const;
+
+ private:
+  Eigen::Vector2f place_of(const Eigen::Vector3f& point, int face) const;
+  const Card* card_at(const Eigen::Vector2f& place, int face, Eigen::Vector2f* inside) const;
 };
 
 /// From the part's points (unit frame), the distance of the cameras and the tag's size, both in the

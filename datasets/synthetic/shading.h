@@ -16,6 +16,7 @@ enum class Style {
   kDark,      ///< dark matt object under little light
   kGlossy,    ///< highlights of the lamps, and the sky mirrored
   kShadowed,  ///< one strong small lamp whose shadows are cast
+  kPhoto,     ///< no matter of shading alone: a photograph of a part on a table, see PhotoOptions
 };
 
 /// How an object looks.
