@@ -69,8 +69,8 @@ Scale scale_at(LensModel model, const Lens::Terms& k, double q) {
 }  // namespace
 
 Lens::Lens(LensModel model, const Terms& terms) : model_(model), terms_(terms) {
-  identity_ = model == LensModel::kPinhole ||
-              (model != LensModel::kOpencvFisheye && all_zero(terms));
+  identity_ =
+      model == LensModel::kPinhole || (model != LensModel::kOpencvFisheye && all_zero(terms));
   if (!identity_) range_ = find_range(model, terms);
 }
 
@@ -78,8 +78,8 @@ Eigen::Matrix2d Lens::jacobian(const Eigen::Vector2d& ideal) const {
   if (identity_) return Eigen::Matrix2d::Identity();
   const double x = ideal.x(), y = ideal.y();
   const Scale scale = scale_at(model_, terms_, x * x + y * y);
-  Eigen::Matrix2d J = scale.s * Eigen::Matrix2d::Identity() +
-                      2 * scale.slope * ideal * ideal.transpose();
+  Eigen::Matrix2d J =
+      scale.s * Eigen::Matrix2d::Identity() + 2 * scale.slope * ideal * ideal.transpose();
   if (model_ == LensModel::kOpencvFisheye) return J;
   const double a = 2 * (terms_.p1 * y + terms_.p2 * x), b = 2 * (terms_.p1 * x + terms_.p2 * y);
   J(0, 0) += a + 4 * terms_.p2 * x;

@@ -35,8 +35,8 @@ Eigen::Matrix<T, 2, 1> distort(LensModel model, const LensTerms<T>& k,
     const T r = sqrt(q), angle = atan(r), t = angle * angle;
     return xy * (angle / r * (T(1) + t * (k.k1 + t * (k.k2 + t * (k.k3 + t * k.k4)))));
   }
-  const T s = (T(1) + q * (k.k1 + q * (k.k2 + q * k.k3))) /
-              (T(1) + q * (k.k4 + q * (k.k5 + q * k.k6)));
+  const T s =
+      (T(1) + q * (k.k1 + q * (k.k2 + q * k.k3))) / (T(1) + q * (k.k4 + q * (k.k5 + q * k.k6)));
   const T xy2 = T(2) * x * y;
   return {s * x + k.p1 * xy2 + k.p2 * (q + T(2) * x * x),
           s * y + k.p1 * (q + T(2) * y * y) + k.p2 * xy2};
