@@ -16,8 +16,8 @@ Family family() { return {tag36h11_create(), tag36h11_destroy}; }
 
 TagBitmap tag36h11(int id) {
   const Family tags = family();
-  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> drawn(
-      apriltag_to_image(tags.get(), id), image_u8_destroy);
+  const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> drawn(apriltag_to_image(tags.get(), id),
+                                                                 image_u8_destroy);
   TagBitmap out{Image<float>(drawn->width, drawn->height),
                 (tags->total_width - tags->width_at_border) / 2};
   for (int y = 0; y < drawn->height; ++y)

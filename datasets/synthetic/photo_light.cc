@@ -15,11 +15,11 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr int kLampRays = 48, kSkyRays = 32, kMirrorRays = 12;
-constexpr float kSkyReach = 1.3f;     // what is further away hides no light of the walls
-constexpr float kBounce = 0.3f;       // light of what hides the walls, against that of the walls
+constexpr float kSkyReach = 1.3f;  // what is further away hides no light of the walls
+constexpr float kBounce = 0.3f;    // light of what hides the walls, against that of the walls
 const Color kWalls(0.27f, 0.262f, 0.25f), kFloor(0.16f, 0.14f, 0.12f);
 
-constexpr float kLayer = 0.0075f;     // height of printed layers
+constexpr float kLayer = 0.0075f;  // height of printed layers
 constexpr float kSpeckleCell = 0.025f;
 
 // Point k of a sequence that fills the unit square evenly: Roberts, "The unreasonable effectiveness
@@ -101,8 +101,8 @@ PhotoShader::PhotoShader(const PhotoWorld& world, const PhotoLook& look, double 
     for (int k = 0; k < 4; ++k) {
       const float x = k & 1 ? 0.5f : -0.5f, y = k & 2 ? 0.5f : -0.5f;
       places_[i][k] = light.centre + x * light.u + y * light.v;
-      norm_[i] += light_from(places_[i][k], light.normal, table,
-                             (places_[i][k] - table).normalized());
+      norm_[i] +=
+          light_from(places_[i][k], light.normal, table, (places_[i][k] - table).normalized());
     }
   }
 }
@@ -147,8 +147,7 @@ Color PhotoShader::irradiance(const Vector3f& point, const Vector3f& normal,
   for (int i = 0; i < 2; ++i) {
     const AreaLight& from = world_.room.lights[i];
     float sum = 0;
-    for (const Vector3f& place : places_[i])
-      sum += light_from(place, from.normal, point, normal);
+    for (const Vector3f& place : places_[i]) sum += light_from(place, from.normal, point, normal);
     light += from.color * (occlusion[i] * sum / norm_[i]);
   }
   return light;
@@ -209,7 +208,8 @@ float PhotoShader::into_layers(float footprint, SurfacePoint* s) const {
   Vector3f across = up_;
   if (flat) across = (up_.unitOrthogonal() + 0.7f * up_.cross(up_.unitOrthogonal())).normalized();
   const float at = across.dot(s->point) / (flat ? 1.5f * kLayer : kLayer), layer = std::floor(at);
-  const std::uint64_t bits = hash(look_.seed, std::uint64_t(std::int64_t(layer) + 100000), flat, 72);
+  const std::uint64_t bits =
+      hash(look_.seed, std::uint64_t(std::int64_t(layer) + 100000), flat, 72);
   const Vector3f along = across - across.dot(s->normal) * s->normal;
   const float strength = 0.3f * visible * (0.6f + 0.8f * float(uniform(bits)));
   s->normal = (s->normal - strength * std::cos(float(2 * M_PI) * at) * along).normalized();

@@ -65,9 +65,9 @@ class PhotoShader {
   float lift_;
   Eigen::Vector3f up_;
   Eigen::Matrix3f stone_;
-  std::array<std::vector<Eigen::Vector3f>, 2> targets_;  // places of each light, for shadows
+  std::array<std::vector<Eigen::Vector3f>, 2> targets_;   // places of each light, for shadows
   std::array<std::array<Eigen::Vector3f, 4>, 2> places_;  // a few of them, for angles
-  std::array<float, 2> norm_;  // of the light of these
+  std::array<float, 2> norm_;                             // of the light of these
   std::vector<Eigen::Vector3f> sky_;  // directions about +z, denser near it by the cosine
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "datasets/synthetic/noise.h"
 #include "datasets/synthetic/pixel_filter.h"
@@ -15,9 +16,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3f;
 
-constexpr int kTile = 240;             // [px], a multiple of all steps
-constexpr int kPrintGrid = 4, kEdgeGrid = 6;  // rays along x and along y of a pixel
-constexpr float kSameLight = 0.04f;    // shares of light that differ by less are interpolated
+constexpr int kTile = 240;                                    // [px], a multiple of all steps
+constexpr int kGrainGrid = 2, kPrintGrid = 4, kEdgeGrid = 6;  // rays along a side of a pixel
+constexpr float kSameLight = 0.04f;  // shares of light that differ by less are interpolated
 
 // What is the same for all tiles.
 struct Frame {
@@ -31,16 +32,31 @@ struct Frame {
   Eigen::Matrix3d unit_from_cam;
   int step;  // [px] between the places where light is computed first
 
-  Vector3f direction(double x, double y) const {
-    Vector2d ideal;
-    if (!view.ideal_pixel({x, y}, &ideal)) ideal = {x, y};  // never with the lenses we draw
-    return (unit_from_cam * view.camera.ray(ideal)).cast<float>();
-  }
+  // Rays of a pixel. Within it the lens is as good as affine: to 1e-4 px.
+  class Rays {
+   public:
+    Rays(const Frame& frame, int x, int y) : frame_(frame) {
+      Eigen::Matrix2d image_from_ideal;
+      if (!frame.view.ideal_pixel({x, y}, &ideal_, &image_from_ideal))
+        throw std::logic_error("a lens that draws nothing in a corner");
+      ideal_from_image_ = image_from_ideal.inverse();
+    }
+    // At `place` from the pixel's centre [px].
+    Vector3f direction(const Vector2d& place) const {
+      const Vector2d ideal = ideal_ + ideal_from_image_ * place;
+      return (frame_.unit_from_cam * frame_.view.camera.ray(ideal)).cast<float>();
+    }
+
+   private:
+    const Frame& frame_;
+    Vector2d ideal_;
+    Eigen::Matrix2d ideal_from_image_;
+  };
 };
 
 // What the ray through a pixel's centre meets.
 struct Glimpse {
-  SurfacePoint s;  // s.face: -1 if nothing
+  SurfacePoint s{Vector3f::Zero(), Vector3f::Zero(), Vector3f::Zero(), Vector3f::Zero(), -1};
   Color color = Color::Zero();
   Occlusion occlusion = Occlusion::Zero();
   bool lit = false;  // occlusion is known
@@ -57,8 +73,8 @@ struct Box {
   int x0, y0, x1, y1;
   bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
   Box grown(int margin, const Camera& camera) const {
-    return {std::max(x0 - margin, 0), std::max(y0 - margin, 0),
-            std::min(x1 + margin, camera.width), std::min(y1 + margin, camera.height)};
+    return {std::max(x0 - margin, 0), std::max(y0 - margin, 0), std::min(x1 + margin, camera.width),
+            std::min(y1 + margin, camera.height)};
   }
 };
 
@@ -102,7 +118,7 @@ class Tile {
     const int n = box_.x1 - box_.x0;
     std::vector<Vector3f> directions(n);
     std::vector<Hit> hits(n);
-    for (int i = 0; i < n; ++i) directions[i] = f_.direction(box_.x0 + i, y);
+    for (int i = 0; i < n; ++i) directions[i] = Frame::Rays(f_, box_.x0 + i, y).direction({0, 0});
     f_.world.tracer.cast(f_.origin, directions.data(), n, hits.data());
     for (int i = 0; i < n; ++i) at(box_.x0 + i, y).s = surface_point(hits[i], directions[i]);
   }
@@ -136,13 +152,26 @@ class Tile {
     if (alike && (high - low).maxCoeff() < kSameLight) {
       for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) interpolate(x0, y0, x1, y1, corners, x, y);
-    } else if (x1 - x0 > 1 || y1 - y0 > 1) {
+    } else if (x1 - x0 <= 2 && y1 - y0 <= 2) {
+      for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) copy_light(corners, &at(x, y));
+    } else {
       const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
       light(x0, y0, x, y);
       if (x1 > x) light(x, y0, x1, y);
       if (y1 > y) light(x0, y, x, y1);
       if (x1 > x && y1 > y) light(x, y, x1, y1);
     }
+  }
+
+  // From the first corner on the same surface.
+  void copy_light(Glimpse* const corners[4], Glimpse* g) const {
+    for (int i = 0; i < 4 && !g->lit; ++i)
+      if (same_surface(corners[i]->s, g->s)) {
+        g->occlusion = corners[i]->occlusion;
+        g->lit = true;
+      }
+    compute_light(g);
   }
 
   void interpolate(int x0, int y0, int x1, int y1, Glimpse* const corners[4], int x, int y) {
@@ -184,8 +213,8 @@ class Tile {
     if (a.s.normal.dot(b.s.normal) < 0.98f ||
         std::abs((b.s.point - a.s.point).dot(a.s.facet_normal)) > 0.5f * footprint(a.s))
       return kEdgeGrid;
-    const Color difference = (a.color - b.color).abs(), both = a.color.max(b.color);
-    return (difference > 0.002f + 0.06f * both).any() ? kPrintGrid : 1;
+    const float contrast = ((a.color - b.color).abs() / (0.03f + a.color.max(b.color))).maxCoeff();
+    return contrast > 0.2f ? kPrintGrid : contrast > 0.06f ? kGrainGrid : 1;
   }
 
   void mark(const Box& box) {
@@ -229,13 +258,14 @@ class Tile {
       return;
     }
     const int n = g.grid, rays = n * n;
+    const Frame::Rays pixel(f_, x, y);
     std::array<Vector3f, kEdgeGrid * kEdgeGrid> directions;
     std::array<Vector2d, kEdgeGrid * kEdgeGrid> places;
     std::array<Hit, kEdgeGrid * kEdgeGrid> hits;
     for (int i = 0; i < rays; ++i) {
       const std::uint64_t r = bits_of(x, y, 100 + i);
       places[i] = {(i % n + uniform(r)) / n - 0.5, (i / n + uniform(mix(r))) / n - 0.5};
-      directions[i] = f_.direction(x + places[i].x(), y + places[i].y());
+      directions[i] = pixel.direction(places[i]);
     }
     f_.world.tracer.cast(f_.origin, directions.data(), rays, hits.data());
     for (int i = 0; i < rays; ++i) {
@@ -280,9 +310,9 @@ class Tile {
   }
 
   const Frame& f_;
-  Box core_;   // what is painted
-  Box inner_;  // and its neighbours, whose filters reach it
-  Box box_;    // and what is needed to light them
+  Box core_;                 // what is painted
+  Box inner_;                // and its neighbours, whose filters reach it
+  Box box_;                  // and what is needed to light them
   Image<Glimpse> glimpses_;  // of box_
   Image<Sums> sums_;         // of core_
 };
@@ -317,8 +347,15 @@ Picture paint_photo(const PhotoWorld& world, const PhotoShader& shader,
                     int index) {
   const int w = view.camera.width, h = view.camera.height;
   const Image<char> on_edges = pixels_on_edges(edges, view);
-  const Frame frame{world, shader, view, seed, index, on_edges, view.center_in_world().cast<float>(),
-                    view.cam_from_world.rotation.transpose(), w < 2000 ? 8 : 16};
+  const Frame frame{world,
+                    shader,
+                    view,
+                    seed,
+                    index,
+                    on_edges,
+                    view.center_in_world().cast<float>(),
+                    view.cam_from_world.rotation.transpose(),
+                    w < 2000 ? 8 : 16};
   const Image<float> zero(w, h, 0.0f);
   Picture out{zero, zero, zero, zero};
   const int columns = (w + kTile - 1) / kTile, rows = (h + kTile - 1) / kTile;

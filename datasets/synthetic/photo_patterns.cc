@@ -29,7 +29,8 @@ float noise(const Vector2f& q, std::uint64_t seed) {
   const auto step = [](float t) { return t * t * (3 - 2 * t); };
   const float s = step(q.x() - fx), t = step(q.y() - fy);
   const float a = share_of(bits_at(seed, x, y), 0), b = share_of(bits_at(seed, x + 1, y), 0);
-  const float c = share_of(bits_at(seed, x, y + 1), 0), d = share_of(bits_at(seed, x + 1, y + 1), 0);
+  const float c = share_of(bits_at(seed, x, y + 1), 0),
+              d = share_of(bits_at(seed, x + 1, y + 1), 0);
   return a + (b - a) * s + (c - a) * t + (a - b - c + d) * s * t;
 }
 
@@ -116,16 +117,15 @@ Color wood(const Pattern& p, const Vector2f& q, float footprint) {
   const float wander = 1.6f * clouds({0.22f * unit.x(), 0.8f * unit.y()}, p.seed, 2, f);
   const float ring = unit.y() * 1.5f + 1.3f * wander;
   const float band = 0.5f + 0.5f * std::sin(float(2 * M_PI) * ring);
-  const float fibres =
-      clouds({1.2f * unit.x(), 16 * unit.y()}, p.seed + 10, 3, 16 * f);
-  float share = 0.2f + 0.4f * band * band + 0.55f * fibres +
-                0.2f * clouds(0.5f * unit, p.seed + 20, 3, f);
+  const float fibres = clouds({1.2f * unit.x(), 16 * unit.y()}, p.seed + 10, 3, 16 * f);
+  float share =
+      0.2f + 0.4f * band * band + 0.55f * fibres + 0.2f * clouds(0.5f * unit, p.seed + 20, 3, f);
   Color color = mixed(p.light, p.dark, std::clamp(share, 0.0f, 1.0f));
   float strength;  // pores, flecks and scratches of use
-  if (in_spot({1.6f * unit.x(), 5 * unit.y()}, p.seed + 30, 0.35f, &strength))
+  if (in_spot({4 * unit.x(), 14 * unit.y()}, p.seed + 30, 0.25f, &strength))
     color *= 1 - 0.5f * strength;
-  if (in_spot({2.1f * unit.y(), 2.3f * unit.x()}, p.seed + 31, 0.12f, &strength))
-    color = mixed(color, Color(0.75f, 0.7f, 0.6f), 0.15f + 0.3f * strength);
+  if (in_spot({7 * unit.y(), 6 * unit.x()}, p.seed + 31, 0.05f, &strength))
+    color = mixed(color, Color(0.75f, 0.7f, 0.6f), 0.1f + 0.3f * strength);
   return color;
 }
 
@@ -143,16 +143,18 @@ Color planks(const Pattern& p, const Vector2f& q, float footprint) {
   const float board = std::floor(q.y() / p.size), at = q.y() / p.size - board;
   const std::uint64_t bits = bits_at(p.seed, 0, int(board));
   if (at < 0.03f) return 0.5f * p.dark;
-  const float grain = clouds({3 * q.x() / p.size, 14 * q.y() / p.size}, bits, 3,
-                             14 * footprint / p.size);
-  return mixed(p.dark, p.light, std::clamp(0.5f * share_of(bits, 1) + 0.3f + 0.4f * grain, 0.0f, 1.0f));
+  const float grain =
+      clouds({3 * q.x() / p.size, 14 * q.y() / p.size}, bits, 3, 14 * footprint / p.size);
+  return mixed(p.dark, p.light,
+               std::clamp(0.5f * share_of(bits, 1) + 0.3f + 0.4f * grain, 0.0f, 1.0f));
 }
 
 Color cells(const Pattern& p, const Vector2f& q) {
   float margin;
   const std::uint64_t bits = nearest_cell(q / p.size, p.seed, &margin);
   if (margin < 0.06f) return p.dark;
-  return color_of(share_of(bits, 2), 0.2f + 0.6f * share_of(bits, 3), 0.3f + 0.5f * share_of(mix(bits), 0));
+  return color_of(share_of(bits, 2), 0.2f + 0.6f * share_of(bits, 3),
+                  0.3f + 0.5f * share_of(mix(bits), 0));
 }
 
 Color marble(const Pattern& p, const Vector2f& q, float footprint) {
@@ -160,13 +162,15 @@ Color marble(const Pattern& p, const Vector2f& q, float footprint) {
   const float f = footprint / p.size, warp = 2.5f * clouds(unit, p.seed, 4, f);
   const float vein = 0.5f + 0.5f * std::sin(float(2 * M_PI) * (0.7f * unit.x() + warp));
   const Color third = 0.5f * (p.light + p.dark).reverse();
-  return mixed(mixed(p.dark, p.light, vein), third, std::clamp(0.5f + 1.5f * clouds(2 * unit, p.seed + 9, 3, f), 0.0f, 1.0f));
+  return mixed(mixed(p.dark, p.light, vein), third,
+               std::clamp(0.5f + 1.5f * clouds(2 * unit, p.seed + 9, 3, f), 0.0f, 1.0f));
 }
 
 Color stripes(const Pattern& p, const Vector2f& q) {
   const float stripe = std::floor(q.x() / p.size), at = q.x() / p.size - stripe;
   const std::uint64_t bits = bits_at(p.seed, int(stripe), 0);
-  return at < 0.2f + 0.6f * share_of(bits, 0) ? p.light : mixed(p.dark, p.light, 0.5f * share_of(bits, 1));
+  return at < 0.2f + 0.6f * share_of(bits, 0) ? p.light
+                                              : mixed(p.dark, p.light, 0.5f * share_of(bits, 1));
 }
 
 }  // namespace

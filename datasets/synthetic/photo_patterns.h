@@ -22,12 +22,12 @@ enum class PatternKind {
   kPlanks,   ///< boards along u
   kText,     ///< lines of strokes that look like print, along u
   kChecker,
-  kCells,    ///< patches of random colours (Voronoi)
+  kCells,  ///< patches of random colours (Voronoi)
   kMarble,
   kStripes,  ///< along v
   kDots,
   kBricks,
-  kBitmap,   ///< `bitmap` over the unit square, first row at v = 1
+  kBitmap,  ///< `bitmap` over the unit square, first row at v = 1
 };
 
 /// What is printed on a surface whose places are (u, v).

@@ -20,7 +20,9 @@ constexpr double kGap = 1e-4;  // between the part and the table: rays need it, 
 
 // Rotation whose z axis is where `up` looks.
 Eigen::Matrix3d part_from_room(Up up) {
-  const int axis = up == Up::kZ || up == Up::kMinusZ ? 2 : up == Up::kY || up == Up::kMinusY ? 1 : 0;
+  const int axis = up == Up::kZ || up == Up::kMinusZ   ? 2
+                   : up == Up::kY || up == Up::kMinusY ? 1
+                                                       : 0;
   const double sign = up == Up::kMinusZ || up == Up::kMinusY || up == Up::kMinusX ? -1 : 1;
   Eigen::Matrix3d R;
   R.col(2) = sign * Eigen::Vector3d::Unit(axis);
@@ -89,13 +91,17 @@ class RoomBuilder {
     const float half = 2.4f * d_, floor = -1.0f * d_, height = 3.2f * d_;
     const Vector3f x(2 * half, 0, 0), y(0, 2 * half, 0), z(0, 0, height);
     const Vector3f low(-half, -half, floor);
-    add_rectangle(low, x, y, plain(PatternKind::kPlanks, {0.42f, 0.36f, 0.3f}, {0.2f, 0.16f, 0.13f}, 0.25f * d_));
-    add_rectangle(low + z, y, x, plain(PatternKind::kPlaster, Color::Constant(0.8f), Color::Zero(), d_));
+    add_rectangle(
+        low, x, y,
+        plain(PatternKind::kPlanks, {0.42f, 0.36f, 0.3f}, {0.2f, 0.16f, 0.13f}, 0.25f * d_));
+    add_rectangle(low + z, y, x,
+                  plain(PatternKind::kPlaster, Color::Constant(0.8f), Color::Zero(), d_));
     const Vector3f sides[4][2] = {{low, y}, {low + y, x}, {low + x + y, -y}, {low + x, -x}};
     for (const auto& [corner, along] : sides) {
       const Color paint = draw_color(0.05f, 0.25f, 0.4f, 0.65f);
       // Normals look into the room.
-      RoomFace& wall = add_rectangle(corner, along, z, plain(PatternKind::kPlaster, paint, Color::Zero(), 0.5f * d_));
+      RoomFace& wall = add_rectangle(corner, along, z,
+                                     plain(PatternKind::kPlaster, paint, Color::Zero(), 0.5f * d_));
       for (int i = 0; i < 4; ++i) {
         const float x_of = (0.14f + 0.24f * float(i) + draw(-0.04f, 0.04f)) * 2 * half;
         const Vector2f at{x_of, draw(0.8f, 2.3f) * d_};
@@ -109,7 +115,8 @@ class RoomBuilder {
     const float x = 1.1f * d_ + 0.4f, y = 0.85f * d_ + 0.4f, depth = 0.06f * d_;
     table_half_ = {x, y};
     const Vector3f a(2 * x, 0, 0), b(0, 2 * y, 0), down(0, 0, -depth), corner(-x, -y, 0);
-    const Pattern top = plain(PatternKind::kWood, {0.46f, 0.29f, 0.16f}, {0.2f, 0.11f, 0.055f}, 0.5f);
+    const Pattern top =
+        plain(PatternKind::kWood, {0.46f, 0.29f, 0.16f}, {0.2f, 0.11f, 0.055f}, 0.5f);
     table_ = int(room_.faces.size());
     add_rectangle(corner, a, b, top);
     add_rectangle(corner + down, a, -down, top);
@@ -155,7 +162,8 @@ class RoomBuilder {
     const TagBitmap tag = tag36h11(id);
     const int cells = tag.cells.width;
     const float half = 0.5f * size * float(cells) / float(cells - 2 * tag.border);
-    Pattern pattern = plain(PatternKind::kBitmap, Color::Constant(0.82f), Color::Constant(0.03f), 1);
+    Pattern pattern =
+        plain(PatternKind::kBitmap, Color::Constant(0.82f), Color::Constant(0.03f), 1);
     pattern.bitmap = std::make_shared<Image<float>>(tag.cells);
     if (!add_card({half, half}, pattern, 0))
       throw InputError("tag-size", "a tag that finds a place on the table", "a larger one");
@@ -204,7 +212,8 @@ class RoomBuilder {
     const Vector3f corner = Vector3f(at.x(), at.y(), 0) - 0.5f * (a + b);
     const Pattern print = draw_print(0.06f);
     add_rectangle(corner + z, a, b, print);
-    const Vector3f sides[4][2] = {{corner, a}, {corner + a, b}, {corner + a + b, -a}, {corner + b, -b}};
+    const Vector3f sides[4][2] = {
+        {corner, a}, {corner + a, b}, {corner + a + b, -a}, {corner + b, -b}};
     for (const auto& [foot, along] : sides) add_rectangle(foot, along, z, print);
   }
 
@@ -237,12 +246,15 @@ class RoomBuilder {
   }
 
   void add_lights() {
-    const Vector3f lamp(0.6f * d_, -0.5f * d_, 2.1f * d_), window(-2.37f * d_, 0.5f * d_, 1.0f * d_);
-    room_.lights[0] = {lamp, {0.5f * d_, 0, 0}, {0, 0.3f * d_, 0}, {0, 0, -1}, Color(1.0f, 0.93f, 0.83f) * 0.56f};
-    room_.lights[1] = {window, {0, 0.6f * d_, 0}, {0, 0, 0.55f * d_}, {1, 0, 0}, Color(0.9f, 0.97f, 1.08f) * 0.4f};
+    const Vector3f lamp(0.9f * d_, -0.8f * d_, 1.9f * d_),
+        window(-2.37f * d_, 0.5f * d_, 1.0f * d_);
+    const Color warm(0.56f, 0.52f, 0.465f), sky(0.36f, 0.388f, 0.432f);
+    room_.lights[0] = {lamp, {0.22f * d_, 0, 0}, {0, 0.14f * d_, 0}, {0, 0, -1}, warm};
+    room_.lights[1] = {window, {0, 0.6f * d_, 0}, {0, 0, 0.55f * d_}, {1, 0, 0}, sky};
     const Pattern white = plain(PatternKind::kPlain, Color::Constant(1), Color::Zero(), 1);
     for (const AreaLight& light : room_.lights) {
-      const Vector3f side = light.u.cross(light.v).dot(light.normal) > 0 ? light.u : Vector3f(-light.u);
+      const Vector3f side =
+          light.u.cross(light.v).dot(light.normal) > 0 ? light.u : Vector3f(-light.u);
       add_rectangle(light.centre - side - light.v, 2 * side, 2 * light.v, white).emission = 3;
     }
   }
@@ -310,8 +322,8 @@ PatternKind PhotoRoom::kind_at(const Vector3f& point, int face) const {
   return card ? card->pattern.kind : faces[face].pattern.kind;
 }
 
-PhotoRoom make_room(const PhotoOptions& options, const std::vector<Vector3f>& part,
-                    double distance, double tag_size, std::uint64_t seed) {
+PhotoRoom make_room(const PhotoOptions& options, const std::vector<Vector3f>& part, double distance,
+                    double tag_size, std::uint64_t seed) {
   const Eigen::Matrix3d R = part_from_room(options.up);
   double lowest = 1e9, radius = 0;
   for (const Vector3f& p : part) {
@@ -321,7 +333,8 @@ PhotoRoom make_room(const PhotoOptions& options, const std::vector<Vector3f>& pa
   }
   Eigen::Affine3d unit_from_room(R);
   unit_from_room.translation() = R * Eigen::Vector3d(0, 0, lowest - kGap);
-  PhotoRoom room = RoomBuilder(options, float(distance), float(radius), float(tag_size), seed).take();
+  PhotoRoom room =
+      RoomBuilder(options, float(distance), float(radius), float(tag_size), seed).take();
   transform(unit_from_room, &room);
   return room;
 }

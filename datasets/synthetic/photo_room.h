@@ -29,8 +29,8 @@ struct Card {
   }
 };
 
-/// What a face of the room looks like. A place on it: (u . x, v . x) of x = point - origin; around a
-/// cylinder about the axis v, the length of the arc from u, and v . x.
+/// What a face of the room looks like. A place on it: (u . x, v . x) of x = point - origin; around
+/// a cylinder about the axis v, the length of the arc from u, and v . x.
 struct RoomFace {
   Eigen::Vector3f origin, u, v;  ///< unit frame
   float radius = 0;              ///< of a cylinder; 0: flat
@@ -48,7 +48,7 @@ struct AreaLight {
 /// What stands around the part of a photograph; unit frame.
 struct PhotoRoom {
   SurfaceMesh mesh;
-  std::vector<RoomFace> faces;  ///< one per face of the mesh
+  std::vector<RoomFace> faces;      ///< one per face of the mesh
   std::array<AreaLight, 2> lights;  ///< a lamp at the ceiling, a window
   Eigen::Affine3d unit_from_room = Eigen::Affine3d::Identity();
   bool has_tag = false;

@@ -35,6 +35,18 @@ Lens drawn_lens(double strength, std::uint64_t seed) {
   return {LensModel::kOpencv, terms};
 }
 
+// Cameras see something in every pixel.
+void check_corners(const View& view) {
+  const double w = view.camera.width - 1, h = view.camera.height - 1;
+  for (const Eigen::Vector2d& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(w, 0),
+                                        Eigen::Vector2d(0, h), Eigen::Vector2d(w, h)}) {
+    Eigen::Vector2d ideal;
+    if (!view.ideal_pixel(corner, &ideal))
+      throw InputError("distortion", "a lens that draws the corners of the picture",
+                       "too much for this focal length");
+  }
+}
+
 double height_above_table(const PhotoWorld& world, const Vector3d& point) {
   return (point - world.room.unit_from_room.translation()).dot(world.room.up());
 }
@@ -69,9 +81,9 @@ void make_photo_views(const SynthesizeOptions& options, const PhotoWorld& world,
     view.camera.cx += off(0);
     view.camera.cy += off(1);
     const double height = height_above_table(world, view.center_in_world());
-    if (height < 0.1)
-      throw InputError("rig", "cameras above the table", view.name + " below it");
+    if (height < 0.1) throw InputError("rig", "cameras above the table", view.name + " below it");
   }
+  check_corners(views->at(0));
 }
 
 void lift_off_table(const PhotoWorld& world, double reach, TruthCurve* curve) {

@@ -46,8 +46,8 @@ inline std::array<float, 9> weights_of_a_ray(float dx, float dy) {
 inline std::array<float, 9> weights_of_a_grid(int grid) {
   std::array<float, 9> sums{};
   for (int i = 0; i < grid * grid; ++i) {
-    const std::array<float, 9> weights = weights_of_a_ray(
-        (float(i % grid) + 0.5f) / float(grid) - 0.5f,
+    const std::array<float, 9> weights =
+        weights_of_a_ray((float(i % grid) + 0.5f) / float(grid) - 0.5f,
                          (float(i / grid) + 0.5f) / float(grid) - 0.5f);
     for (int k = 0; k < 9; ++k) sums[k] += weights[k];
   }

@@ -111,8 +111,8 @@ void undo_similarity(const std::vector<View>& views, const Eigen::Matrix3Xd& poi
     Eigen::Matrix<double, 3, 7> world;
     world << Matrix3d::Identity(), Matrix3d::Zero(), d;
     world.block<3, 3>(0, 3) << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0;  // w x d
-    const Eigen::Matrix<double, 2, 7> J = b.camera.project_jacobian(b.cam_from_world * x) *
-                                          b.cam_from_world.rotation * world;
+    const Eigen::Matrix<double, 2, 7> J =
+        b.camera.project_jacobian(b.cam_from_world * x) * b.cam_from_world.rotation * world;
     H += J.transpose() * J;
     g += J.transpose() * shift;
   });
