@@ -41,10 +41,9 @@ double find_range(LensModel model, const Lens::Terms& k) {
   return std::sqrt(std::min(turn, first_root({k.k4, k.k5, k.k6})));
 }
 
-bool all_zero(const Lens::Terms& k) {
-  for (const double term : {k.k1, k.k2, k.p1, k.p2, k.k3, k.k4, k.k5, k.k6})
-    if (term != 0) return false;
-  return true;
+bool all_of_terms(const Lens::Terms& k, bool (*is)(double)) {
+  const auto terms = {k.k1, k.k2, k.p1, k.p2, k.k3, k.k4, k.k5, k.k6};
+  return std::all_of(terms.begin(), terms.end(), is);
 }
 
 /// The factor s of a point at the squared radius q, and ds/dq.
@@ -70,8 +69,13 @@ Scale scale_at(LensModel model, const Lens::Terms& k, double q) {
 
 Lens::Lens(LensModel model, const Terms& terms) : model_(model), terms_(terms) {
   identity_ =
-      model == LensModel::kPinhole || (model != LensModel::kOpencvFisheye && all_zero(terms));
-  if (!identity_) range_ = find_range(model, terms);
+      model == LensModel::kPinhole || (model != LensModel::kOpencvFisheye &&
+                                       all_of_terms(terms, [](double term) { return term == 0; }));
+  if (!identity_) range_ = is_finite() ? find_range(model, terms) : 0;
+}
+
+bool Lens::is_finite() const {
+  return all_of_terms(terms_, [](double term) { return std::isfinite(term); });
 }
 
 Eigen::Matrix2d Lens::jacobian(const Eigen::Vector2d& ideal) const {

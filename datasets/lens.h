@@ -54,6 +54,8 @@ class Lens {
   const Terms& terms() const { return terms_; }
   /// Does it draw every point where a pinhole would?
   bool is_identity() const { return identity_; }
+  /// Are all parameters numbers? If not, it draws nothing.
+  bool is_finite() const;
   /// Radius in ideal coordinates up to which the distorted radius grows with it (tangential terms
   /// left out); beyond, the formula folds back and means nothing. Infinite if it never does.
   double range() const { return range_; }

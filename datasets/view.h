@@ -16,6 +16,8 @@ namespace sketchsplat {
 struct View {
   std::string name;        ///< file name of the image, as outputs are called
   std::string image_path;  ///< where to read it
+  std::string mask_path;   ///< file that is white where the object is; empty if there is none
+  bool mask_over_alpha = false;  ///< the mask counts even if the image has an alpha channel
   Camera camera;           ///< width and height are filled from the image if the scene file is silent
   Pose cam_from_world;
   Lens lens;

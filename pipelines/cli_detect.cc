@@ -22,7 +22,7 @@ namespace {
 constexpr double kTolerance = 1.5;  // [px] of --score
 
 struct DetectArguments {
-  std::string scene, out, format;
+  std::string scene, out, format, masks;
   DetectionOptions detection;
   double ridge_px = 0.7;  // half of the width in which people and networks draw edges
   bool score = false;
@@ -117,7 +117,8 @@ void print_map_errors(const std::vector<ViewScore>& scores) {
 }
 
 void run_detect(const DetectArguments& arguments, Progress* progress) {
-  const Scene scene = open_scene(arguments.scene, arguments.format);
+  Scene scene = open_scene(arguments.scene, arguments.format);
+  if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
   prepare_output_folder(map_folder(arguments));
   const std::unique_ptr<Detector> detector = make_detector(arguments.detection);
@@ -161,6 +162,7 @@ Verb detect_verb() {
   out.short_name = "o";
   f.choose("format", &arguments->format, scene_formats(),
            "What the folder is; if left out, its files decide");
+  f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
   list_fields(&arguments->detection, &f);
   f.group("Maps");
   f.add("ridge", &arguments->ridge_px, "px", 0.3, 10, "Width (one sigma) in which edges are drawn");
