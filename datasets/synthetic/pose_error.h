@@ -9,12 +9,13 @@
 
 namespace sketchsplat {
 
-/// Cameras as structure from motion might have found them. Errors of turns and places run smoothly
-/// over the places of the cameras, so that neighbours share most of them, with a little of each
-/// camera's own; focal length, principal point and, where there is one, the lens are wrong for all
-/// alike, and the poses make up for the most of that. What a similarity of the world could undo has
-/// been undone. `px`: RMS of the shift of `points` (3 x N) in the images, over points and views, of
-/// what the lens draws. More of it is about the same error, scaled.
+/// Cameras as structure from motion might have found them. They swing about the points, stand
+/// nearer or further and look a little past them, by what runs smoothly over the places of the
+/// cameras, so that neighbours share most of it, and by something of each camera's own; focal
+/// length, principal point and, where there is one, the lens are wrong for all alike, and the poses
+/// make up for the most of that. What a similarity of the world could undo has been undone. `px`:
+/// RMS of the shift of `points` (3 x N) in the images, over points and views, of what the lens
+/// draws. More of it is about the same error, scaled.
 std::vector<View> with_pose_error(const std::vector<View>& views, const Eigen::Matrix3Xd& points,
                                   double px, std::uint64_t seed);
 
