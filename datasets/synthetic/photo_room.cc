@@ -127,10 +127,10 @@ class RoomBuilder {
   }
 
   // Free room for a disc on the table, near the part rather than far from it.
-  bool find_place(float radius, Vector2f* place) {
+  bool find_place(float radius, Vector2f* place, bool beside_part = false) {
     constexpr int kTries = 300;
     const float least = taken_[0].radius + radius + 0.04f;
-    const float most = std::max(reach_, least + 0.3f);
+    const float most = beside_part ? least : std::max(reach_, least + 0.3f);
     for (int i = 0; i < kTries; ++i) {
       const float r = least + (most - least) * draw() * std::min(1.0f, 0.3f + float(i) / 150);
       const float a = float(2 * M_PI) * draw();
@@ -148,9 +148,10 @@ class RoomBuilder {
     return false;
   }
 
-  bool add_card(const Vector2f& half, const Pattern& pattern, float margin) {
+  bool add_card(const Vector2f& half, const Pattern& pattern, float margin,
+                bool beside_part = false) {
     Vector2f at;
-    if (!find_place(half.norm(), &at)) return false;
+    if (!find_place(half.norm(), &at, beside_part)) return false;
     const float a = float(2 * M_PI) * draw();
     // The table's places count from its corner.
     room_.faces[table_].cards.push_back(
@@ -165,7 +166,7 @@ class RoomBuilder {
     Pattern pattern =
         plain(PatternKind::kBitmap, Color::Constant(0.82f), Color::Constant(0.03f), 1);
     pattern.bitmap = std::make_shared<Image<float>>(tag.cells);
-    if (!add_card({half, half}, pattern, 0))
+    if (!add_card({half, half}, pattern, 0, /*beside_part=*/true))
       throw InputError("tag-size", "a tag that finds a place on the table", "a larger one");
     const Card& card = room_.faces[table_].cards.back();
     const Vector2f u = card.along, v(-u.y(), u.x()), middle = card.centre - table_half_;
