@@ -12,6 +12,7 @@
 
 #include "datasets/errors.h"
 #include "datasets/scene.h"
+#include "datasets/synthetic/synthesize.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/bench/child.h"
 #include "pipelines/bench/machine.h"
@@ -143,8 +144,9 @@ std::string Measurer::key(const BenchJob& job) const {
 
 bool Measurer::make_scene(const BenchJob& job, BenchRow* row) {
   const std::string folder = scene_folder(job);
-  // The file is written last: where it is, the scene is whole.
-  if (!job.folder.empty() || fs::exists(folder + "/meta_data.json")) return true;
+  if (!job.folder.empty()) return true;
+  for (const char* last : kLastFiles)
+    if (fs::exists(folder + "/" + last)) return true;
   std::vector<std::string> arguments = {"synthesize", "--quiet", "--out", folder};
   const std::vector<std::string> flags = flags_of(job.synthesize, synthesize_fields_);
   arguments.insert(arguments.end(), flags.begin(), flags.end());
