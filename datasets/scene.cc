@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "datasets/errors.h"
+#include "datasets/far_views.h"
 #include "datasets/format.h"
 
 namespace sketchsplat {
@@ -68,6 +69,7 @@ Scene open_scene(const std::string& folder, const std::string& format) {
   scene.folder = folder;
   scene.format = reader.name;
   reader.read(folder, &scene);
+  leave_out_far_views(&scene);
   if (scene.views.empty()) {
     throw InputError(folder, "a scene with frames that can be used",
                      scene.warnings.empty() ? "no frame" : "none (" + scene.warnings.front() + ")");

@@ -16,6 +16,7 @@
 #include "pipelines/outputs.h"
 #include "pipelines/report.h"
 #include "sketches/io.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace {
@@ -60,7 +61,7 @@ Sketch read_sketch(const std::string& given) {
 // What sketch.json holds beside the sketch: the options, the names of the views.
 std::string other_members(const std::string& path, bool without_proposed) {
   std::ifstream in(path);
-  nlohmann::ordered_json j = nlohmann::ordered_json::parse(in);
+  nlohmann::ordered_json j = parse_json<nlohmann::ordered_json>(in, path);
   for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
   if (without_proposed) j.erase("proposed");
   return j.dump();
@@ -70,7 +71,7 @@ std::string other_members(const std::string& path, bool without_proposed) {
 Sketch with_proposed(Sketch sketch, const std::string& given) {
   const std::string path = sketch_file(given);
   std::ifstream in(path);
-  const nlohmann::ordered_json j = nlohmann::ordered_json::parse(in);
+  const auto j = parse_json<nlohmann::ordered_json>(in, path);
   if (!j.contains("proposed")) return sketch;
   std::istringstream text(j["proposed"].dump());
   const Sketch proposed = read_sketch_json(text, path + ": proposed");

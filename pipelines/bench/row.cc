@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/errors.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace {
@@ -192,8 +193,12 @@ std::string bench_json(const std::vector<BenchRow>& rows, const std::string& sui
 std::vector<BenchRow> read_bench_json(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return {};
-  // Ordered: columns stay where they are.
-  const Json json = Json::parse(in, nullptr, false);
+  Json json;  // ordered: columns stay where they are
+  try {
+    json = parse_json<Json>(in, path);
+  } catch (const Json::exception&) {
+    // said below
+  }
   if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array())
     throw InputError(path, "results of sketchsplat bench", "something else");
   std::vector<BenchRow> rows;
