@@ -77,6 +77,12 @@ Scene open_scene(const std::string& folder, const std::string& format) {
   return scene;
 }
 
+bool is_scene_folder(const std::string& folder, const std::string& format) {
+  return std::any_of(std::begin(kFormats), std::end(kFormats), [&](const SceneFormat* known) {
+    return (format.empty() || format == known->name) && known->is_marked(folder);
+  });
+}
+
 std::vector<std::string> scene_formats() {
   std::vector<std::string> names;
   for (const SceneFormat* format : kFormats) names.push_back(format->name);

@@ -25,7 +25,8 @@ std::string flag_text(const Field& field) {
   if (field.positional) return field.unit;
   if (std::holds_alternative<bool*>(field.value))
     return (field.initial == "true" ? "--[no-]" : "--") + field.name;
-  return "--" + field.name + " " + placeholder(field);
+  const std::string value = placeholder(field);
+  return "--" + field.name + " " + (field.value_optional ? "[" + value + "]" : value);
 }
 
 std::string with_short_name(const Field& field) {
@@ -118,7 +119,7 @@ std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field
   text += "  --version                   Show the version\n";
   text +=
       "\nExit status: 0 done, 2 wrong usage, 3 unusable input, 4 too little in the scene,\n"
-      "5 output cannot be written, 1 a defect of the program.\n";
+      "5 output cannot be written, 6 a batch of which some scenes failed, 1 a defect of the program.\n";
   return text;
 }
 

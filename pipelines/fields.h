@@ -37,6 +37,7 @@ struct Field {
   bool required = false;
   bool positional = false;
   bool several = false;  ///< a text that may be given many times, joined by '\n'
+  bool value_optional = false;  ///< "--name" alone is a text "-"
   bool alone = false;    ///< a flag that is a task of its own: nothing else is required then
   std::function<void()> applied;  ///< called after a user's value was assigned; may be empty
 };
