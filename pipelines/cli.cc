@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -13,6 +14,8 @@
 #include "datasets/errors.h"
 #include "pipelines/batch/run.h"
 #include "pipelines/cli_help.h"
+#include "pipelines/completion.h"
+#include "pipelines/manual.h"
 #include "pipelines/version.h"
 
 namespace sketchsplat {
@@ -104,7 +107,8 @@ Progress::Mode progress_mode(const CommonOptions& common) {
 struct Parser {
   CLI::App app;
   Texts texts, common_texts;  // of the verb, of all verbs: they may share names
-  bool help = false, version = false, markdown = false;
+  bool help = false, version = false, markdown = false, manual = false;
+  std::string completion;  // a shell
   std::vector<CLI::App*> subcommands;
 
   Parser(const std::vector<Verb>& verbs, const std::vector<Field>& common) {
@@ -112,6 +116,8 @@ struct Parser {
     app.add_flag("-h,--help", help);
     app.add_flag("--version", version);
     app.add_flag("--options-markdown", markdown);
+    app.add_flag("--man", manual);
+    app.add_option("--completion", completion);
     app.allow_extras();
     register_fields(&app, common, &common_texts);
     for (const Verb& verb : verbs) {
@@ -143,6 +149,13 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
               << "\nwith " << library_versions() << "\n";
   } else if (parser.markdown) {
     std::cout << options_markdown(verbs);
+  } else if (parser.manual) {
+    std::cout << manual_page(verbs, common_fields.list);
+  } else if (!parser.completion.empty()) {
+    const std::vector<std::string>& shells = completion_shells();
+    if (std::find(shells.begin(), shells.end(), parser.completion) == shells.end())
+      throw UsageError("--completion: expected bash, zsh or fish, got '" + parser.completion + "'");
+    std::cout << completion_script(parser.completion, verbs, common_fields.list);
   } else if ((parser.help || help_word) && verb) {
     std::cout << verb_help(*verb, common_fields.list);
   } else if ((parser.help && extras.empty()) || (help_word && extras.size() == 1)) {
@@ -164,13 +177,20 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
     Progress progress(progress_mode(common), common.verbose && !common.quiet);
     progress.use_color(Progress::stderr_has_color());
     if (!common.log.empty()) progress.log_to(common.log);
-    verb->run(common, &progress);
+    try {
+      verb->run(common, &progress);
+    } catch (const std::exception& e) {
+      progress.log(e.what());
+      throw;
+    }
     progress.repeat_warnings();
   }
 }
 
 int complain(ExitStatus status, const std::string& text) {
-  std::fprintf(stderr, "sketchsplat: %s\n", text.c_str());
+  const bool color = Progress::stderr_has_color();
+  std::fprintf(stderr, color ? "\033[31msketchsplat:\033[0m %s\n" : "sketchsplat: %s\n",
+               text.c_str());
   return status;
 }
 

@@ -8,6 +8,7 @@
 
 #include "pipelines/batch/run.h"
 #include "pipelines/cli.h"
+#include "pipelines/print_json.h"
 
 namespace sketchsplat {
 namespace {
@@ -72,7 +73,7 @@ void tell_plan(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, b
                                   {"largest_mb", std::round(largest)}};
     out["open"] = nlohmann::ordered_json::array();
     for (const int i : plan.open) out["open"].push_back(scenes[i].scene.folder);
-    std::cout << out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    print_json(out);
     return;
   }
   for (const int i : plan.open) std::cout << scenes[i].scene.folder << "\n";
@@ -108,12 +109,16 @@ std::vector<SceneRow> sum_up(const std::vector<PlannedScene>& scenes, const Batc
     rows.push_back(scene_row(scene.scene, scene.key, store));
     names.push_back(scene.scene);
   }
+  sort_rows(&rows);
   if (run.shard.count > 1) return rows;
   const std::string options = batch_options_json(run);
-  store.write_file("summary.csv", summary_csv(rows));
-  store.write_file("summary.json", summary_json(rows, options));
-  store.write_file("index.html", summary_html(rows, options));
-  store.write_file(".batch/timings.csv", timings_csv(names, store));
+  store.write_file("summary.csv", [&](std::ostream& out) { write_summary_csv(out, rows); });
+  store.write_file("summary.json",
+                   [&](std::ostream& out) { write_summary_json(out, rows, options); });
+  store.write_file("index.html",
+                   [&](std::ostream& out) { write_summary_html(out, rows, options, store); });
+  store.write_file(".batch/timings.csv",
+                   [&](std::ostream& out) { write_timings_csv(out, names, store); });
   return rows;
 }
 
@@ -121,7 +126,7 @@ void tell_rows(const std::vector<SceneRow>& rows, const BatchRun& run, bool json
   const int done = count(rows, SceneRow::State::kDone);
   const int failed = count(rows, SceneRow::State::kFailed), open = int(rows.size()) - done - failed;
   if (json) {
-    std::cout << summary_json(rows, batch_options_json(run));
+    write_summary_json(std::cout, rows, batch_options_json(run));
   } else {
     std::cout << run.out << ": " << done << " of " << rows.size() << " scenes done";
     if (run.shard.count > 1)

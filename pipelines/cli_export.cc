@@ -14,6 +14,7 @@
 #include "pipelines/cli.h"
 #include "pipelines/confidence.h"
 #include "pipelines/outputs.h"
+#include "pipelines/print_json.h"
 #include "pipelines/report.h"
 #include "sketches/io.h"
 #include "sketches/json_text.h"
@@ -131,13 +132,10 @@ Sketch confident(const Sketch& sketch, double least, const std::string& path, Pr
                                  [](const Evidence& e) { return !std::isnan(e.confidence); });
   if (!known && sketch.size() > 0)
     progress->warn(path + " knows no confidence: --min-confidence leaves nothing out");
-  const Sketch kept = keep_confident(sketch, least);
-  std::cout << kept.size() << " curves, " << sketch.size() - kept.size()
-            << " less probable ones left out\n";
-  return kept;
+  return keep_confident(sketch, least);
 }
 
-void run_export(const ExportArguments& arguments, Progress* progress) {
+void run_export(const ExportArguments& arguments, bool json, Progress* progress) {
   const std::string format = arguments.format.empty() ? format_of(arguments.out) : arguments.format;
   if (format.empty())
     throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
@@ -147,6 +145,14 @@ void run_export(const ExportArguments& arguments, Progress* progress) {
   const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
   write_atomically(arguments.out,
                    [&](std::ostream& out) { write(out, sketch, arguments, format); });
+  const int left_out = all.size() - sketch.size();
+  if (json)
+    print_json({{"file", arguments.out},
+                {"format", format},
+                {"curves", sketch.size()},
+                {"left_out", left_out}});
+  else if (arguments.min_confidence > 0)
+    std::cout << sketch.size() << " curves, " << left_out << " less probable ones left out\n";
 }
 
 }  // namespace
@@ -178,8 +184,8 @@ Verb export_verb() {
                    "sketchsplat export out/part -o part.dxf --scale 50",
                    "sketchsplat export out/part -o part.obj --deflection 1e-5"};
   verb.fields = f.list;
-  verb.run = [arguments](const CommonOptions&, Progress* progress) {
-    run_export(*arguments, progress);
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    run_export(*arguments, common.json, progress);
   };
   return verb;
 }

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
+#include "pipelines/estimate.h"
 #include "pipelines/outputs.h"
+#include "pipelines/print_json.h"
 #include "pipelines/reconstruct.h"
 
 namespace sketchsplat {
@@ -13,21 +21,74 @@ namespace {
 struct ReconstructArguments {
   std::string scene, out;
   std::string format;  // empty: found out
+  bool dry_run = false;
   ReconstructOptions method;
   OutputOptions output;
 };
+
+// How many views the detector finds no map for.
+int missing_maps(const Scene& scene, const std::string& detector) {
+  const std::string prefix = "maps:";
+  if (detector.rfind(prefix, 0) != 0) return 0;
+  return int(std::count_if(scene.views.begin(), scene.views.end(), [&](const View& view) {
+    return edge_map_path(scene, view, detector.substr(prefix.size())).empty();
+  }));
+}
+
+// What would be read, how long it takes, and how much memory.
+void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool json) {
+  double pixels = 0;
+  for (const View& view : scene.views) pixels += double(view.camera.width) * view.camera.height;
+  const int views = int(scene.views.size()), threads = omp_get_max_threads();
+  const Load load = expected_load(views, pixels, arguments.method, threads);
+  const int missing = missing_maps(scene, arguments.method.detector);
+  if (json) {
+    print_json({{"scene", scene.folder},
+                {"format", scene.format},
+                {"views", views},
+                {"pixels", pixels},
+                {"left_out", scene.warnings.size()},
+                {"missing_maps", missing},
+                {"threads", threads},
+                {"expected_seconds", load.seconds},
+                {"expected_mb", load.memory_mb}});
+    return;
+  }
+  std::cout << scene.folder << ": " << scene.format << ", " << views << " views, "
+            << std::llround(pixels / 1e5) / 10.0 << " million pixels";
+  if (!scene.warnings.empty()) std::cout << ", " << scene.warnings.size() << " frames left out";
+  if (missing > 0) std::cout << ", " << missing << " edge maps missing";
+  std::cout << "\nroughly " << rough_duration(load.seconds) << " with " << threads
+            << (threads == 1 ? " thread" : " threads") << ", " << std::lround(load.memory_mb)
+            << " MB, into " << arguments.out << "\n";
+}
+
+void tell_result(const Sketch& sketch, const ReconstructArguments& arguments, bool json) {
+  if (json) {
+    std::ifstream in(arguments.out + "/report.json");
+    nlohmann::ordered_json result = {{"out", arguments.out}};
+    result.update(nlohmann::ordered_json::parse(in));
+    print_json(result);
+    return;
+  }
+  std::cout << arguments.out << "/sketch.step: " << sketch.size() << " curves, "
+            << sketch.nodes.cols() << " junctions\n"
+            << arguments.out << "/report.html: to look at\n";
+}
 
 void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common,
                      Progress* progress) {
   arguments.method.seed = common.seed;
   const Scene scene = open_scene(arguments.scene, arguments.format);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
+  if (arguments.dry_run) {
+    tell_plan(scene, arguments, common.json);
+    return;
+  }
   prepare_output_folder(arguments.out);
   const Reconstruction result = reconstruct(scene, arguments.method, progress);
   write_outputs(arguments.out, result, scene, arguments.method, arguments.output, progress);
-  std::cout << arguments.out << "/sketch.step: " << result.sketch.size() << " curves, "
-            << result.sketch.nodes.cols() << " junctions\n"
-            << arguments.out << "/report.html: to look at\n";
+  tell_result(result.sketch, arguments, common.json);
 }
 
 }  // namespace
@@ -43,6 +104,8 @@ Verb reconstruct_verb() {
   out.short_name = "o";
   f.choose("format", &arguments->format, scene_formats(),
            "What the folder is; if left out, its files decide");
+  f.add("dry-run", &arguments->dry_run,
+        "Say what would be read, how long it would take, and how much memory");
   list_fields(&arguments->method, &f);
   list_fields(&arguments->output, &f);
   Verb verb;

@@ -10,9 +10,9 @@ struct Rate {
 };
 
 Rate rate_of(const std::string& preset) {
-  if (preset == "fast") return {0.1, 0.05, 25, 7};
-  if (preset == "accurate") return {0.2, 0.2, 25, 7};
-  return {0.15, 0.11, 25, 7};
+  if (preset == "fast") return {0.08, 0.05, 25, 7};
+  if (preset == "accurate") return {0.15, 0.16, 25, 7};
+  return {0.1, 0.11, 25, 7};
 }
 
 }  // namespace

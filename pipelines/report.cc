@@ -113,19 +113,6 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-// No text of ours may end the script element: "<" appears in JSON inside of strings only.
-std::string without_tags(const std::string& json) {
-  std::string safe;
-  safe.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 }  // namespace
 
 Extent sketch_extent(const Sketch& sketch) {
@@ -179,13 +166,22 @@ std::string report_html(const std::string& report, const Sketch& sketch,
   for (const ReportImage& image : overlays)
     data["overlays"].push_back({{"name", image.name}, {"png", base64(image.png)}});
 
-  return page_with_data(kReportPage, dump(data, -1));
+  const std::string page = kReportPage, mark = "@DATA@";
+  const size_t at = page.find(mark);
+  return page.substr(0, at) + without_tags(dump(data, -1)) + page.substr(at + mark.size());
 }
 
-std::string page_with_data(const std::string& page, const std::string& json) {
-  const std::string mark = "@DATA@";
-  const size_t at = page.find(mark);
-  return page.substr(0, at) + without_tags(json) + page.substr(at + mark.size());
+// "<" appears in JSON inside of strings only.
+std::string without_tags(const std::string& json) {
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
+  }
+  return safe;
 }
 
 }  // namespace sketchsplat

@@ -29,8 +29,8 @@ struct ReportImage {
 std::string report_html(const std::string& report, const Sketch& sketch,
                         const std::vector<ReportImage>& overlays);
 
-/// A page whose mark @DATA@ is replaced by JSON, which no text in it can end.
-std::string page_with_data(const std::string& page, const std::string& json);
+/// JSON that no text in it can end, where it stands in a script element.
+std::string without_tags(const std::string& json);
 
 /// Box around the curves, from samples of them; zero-sized at the origin if there are none.
 struct Extent {

@@ -160,9 +160,10 @@ void BatchStore::publish(const std::string& scene) const {
   remove_empty(own("running"), scene);
 }
 
-void BatchStore::write_file(const std::string& name, const std::string& text) const {
+void BatchStore::write_file(const std::string& name,
+                            const std::function<void(std::ostream&)>& write) const {
   const std::string part = own(fs::path(name).filename().string() + ".new");
-  write_atomically(part, [&](std::ostream& out) { out << text; });
+  write_atomically(part, write);
   std::error_code error;
   fs::rename(part, result(name), error);
   check(error, result(name));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -55,7 +57,7 @@ class BatchStore {
 
   /// Writes a file of the output folder by way of .batch: a batch that is killed leaves no part of
   /// it. Throws OutputError.
-  void write_file(const std::string& name, const std::string& text) const;
+  void write_file(const std::string& name, const std::function<void(std::ostream&)>& write) const;
 
   /// Throws OutputError.
   void write(const RunRecord& run, const std::string& scene) const;

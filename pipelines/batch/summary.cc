@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "eval/csv.h"
 #include "pipelines/batch/index_page.h"
@@ -37,21 +37,11 @@ std::string text_of(double value) {
   return text;
 }
 
-std::vector<SceneRow> failures_first(std::vector<SceneRow> rows) {
-  const auto rank = [](const SceneRow& row) {
-    return row.state == SceneRow::State::kFailed ? 0 : row.state == SceneRow::State::kOpen ? 1 : 2;
-  };
-  std::stable_sort(rows.begin(), rows.end(), [&](const SceneRow& a, const SceneRow& b) {
-    return std::make_pair(rank(a), a.scene) < std::make_pair(rank(b), b.scene);
-  });
-  return rows;
-}
-
 // Names of the scores in the order of the first scene that has them.
 std::vector<std::string> score_names(const std::vector<SceneRow>& rows) {
   std::vector<std::string> names;
   for (const SceneRow& row : rows)
-    for (const auto& [name, value] : row.record.scores)
+    for (const auto& [name, value] : row.scores)
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   return names;
 }
@@ -63,7 +53,7 @@ Numbers mean_scores(const std::vector<SceneRow>& rows) {
     double sum = 0;
     int n = 0;
     for (const SceneRow& row : rows) {
-      const double value = value_of(row.record.scores, name);
+      const double value = value_of(row.scores, name);
       if (!std::isfinite(value)) continue;
       sum += value;
       ++n;
@@ -82,41 +72,47 @@ Json json_of(const Numbers& numbers) {
   return object;
 }
 
-Json json_of(const SceneRow& row, bool thumbnail) {
+Json json_of(const SceneRow& row) {
   Json json = {{"scene", row.scene}, {"state", state_name(row.state)}};
   if (row.state == SceneRow::State::kFailed) {
     json["status"] = row.status;
     json["reason"] = row.reason;
   }
   if (row.state != SceneRow::State::kDone) return json;
-  json["format"] = row.record.format;
-  Numbers counts;
-  for (const std::string& name : kCounts) counts.push_back({name, value_of(row.record.counts, name)});
-  json["counts"] = json_of(counts);
-  json["warnings"] = row.record.warnings;
-  if (!row.record.scores.empty()) json["scores"] = json_of(row.record.scores);
-  if (!row.record.note.empty()) json["note"] = row.record.note;
-  if (thumbnail) json["thumbnail"] = row.record.thumbnail;
+  json["format"] = row.format;
+  json["counts"] = json_of(row.counts);
+  json["warnings"] = row.warnings;
+  if (!row.scores.empty()) json["scores"] = json_of(row.scores);
+  if (!row.note.empty()) json["note"] = row.note;
   return json;
 }
 
-Json summary_of(const std::vector<SceneRow>& rows, const std::string& options_json,
-                bool thumbnails) {
+// Fit for pages, too.
+std::string dump(const Json& json) {
+  return without_tags(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+// Row by row: all of them as one value would be many times as large as what is written.
+// `describe` is what stands for a row.
+template <typename Describe>
+void write_json(std::ostream& out, const std::vector<SceneRow>& rows,
+                const std::string& options_json, Describe describe) {
   const auto count = [&](SceneRow::State state) {
     return std::count_if(rows.begin(), rows.end(),
                          [&](const SceneRow& row) { return row.state == state; });
   };
-  Json json = {{"program", "sketchsplat"},
+  Json head = {{"program", "sketchsplat"},
                {"version", program_version()},
                {"commit", program_commit()},
                {"done", count(SceneRow::State::kDone)},
                {"failed", count(SceneRow::State::kFailed)},
                {"open", count(SceneRow::State::kOpen)}};
-  json["mean"] = json_of(mean_scores(rows));
-  json["scenes"] = Json::array();
-  for (const SceneRow& row : failures_first(rows)) json["scenes"].push_back(json_of(row, thumbnails));
-  json["options"] = Json::parse(options_json);
-  return json;
+  head["mean"] = json_of(mean_scores(rows));
+  head["options"] = Json::parse(options_json);
+  const std::string text = dump(head);
+  out << text.substr(0, text.size() - 1) << ",\n\"scenes\":[";
+  for (size_t i = 0; i < rows.size(); ++i) out << (i ? ",\n" : "\n") << dump(describe(rows[i]));
+  out << "\n]}\n";
 }
 
 }  // namespace
@@ -124,8 +120,14 @@ Json summary_of(const std::vector<SceneRow>& rows, const std::string& options_js
 SceneRow scene_row(const BatchScene& scene, const SceneKey& key, const BatchStore& store) {
   SceneRow row;
   row.scene = scene.name;
-  if (is_done(store.result(scene.name), key, &row.record)) {
+  SceneRecord record;
+  if (is_done(store.result(scene.name), key, &record)) {
     row.state = SceneRow::State::kDone;
+    row.format = record.format;
+    for (const std::string& name : kCounts) row.counts.push_back({name, value_of(record.counts, name)});
+    row.warnings = record.warnings;
+    row.scores = record.scores;
+    row.note = record.note;
     return row;
   }
   const RunRecord run = store.run(scene.name);
@@ -136,47 +138,63 @@ SceneRow scene_row(const BatchScene& scene, const SceneKey& key, const BatchStor
   return row;
 }
 
-std::string summary_csv(const std::vector<SceneRow>& rows) {
+void sort_rows(std::vector<SceneRow>* rows) {
+  const auto rank = [](const SceneRow& row) {
+    return row.state == SceneRow::State::kFailed ? 0 : row.state == SceneRow::State::kOpen ? 1 : 2;
+  };
+  std::stable_sort(rows->begin(), rows->end(), [&](const SceneRow& a, const SceneRow& b) {
+    return rank(a) != rank(b) ? rank(a) < rank(b) : a.scene < b.scene;
+  });
+}
+
+void write_summary_csv(std::ostream& out, const std::vector<SceneRow>& rows) {
   const std::vector<std::string> scores = score_names(rows);
-  std::string text = "scene,state,status,reason,format";
-  for (const std::string& name : kCounts) text += "," + name;
-  text += ",warnings";
-  for (const std::string& name : scores) text += "," + name;
-  text += ",note\n";
-  for (const SceneRow& row : failures_first(rows)) {
-    const bool done = row.state == SceneRow::State::kDone;
-    text += csv_cell(row.scene) + "," + state_name(row.state);
-    text += row.state == SceneRow::State::kFailed ? "," + std::to_string(row.status) : ",";
-    text += "," + csv_cell(row.reason) + "," + row.record.format;
-    for (const std::string& name : kCounts) text += "," + text_of(value_of(row.record.counts, name));
-    text += "," + (done ? std::to_string(row.record.warnings) : "");
-    for (const std::string& name : scores) text += "," + text_of(value_of(row.record.scores, name));
-    text += "," + csv_cell(row.record.note) + "\n";
+  out << "scene,state,status,reason,format";
+  for (const std::string& name : kCounts) out << "," << name;
+  out << ",warnings";
+  for (const std::string& name : scores) out << "," << name;
+  out << ",note\n";
+  for (const SceneRow& row : rows) {
+    out << csv_cell(row.scene) << "," << state_name(row.state) << ",";
+    if (row.state == SceneRow::State::kFailed) out << row.status;
+    out << "," << csv_cell(row.reason) << "," << row.format;
+    for (const std::string& name : kCounts) out << "," << text_of(value_of(row.counts, name));
+    out << ",";
+    if (row.state == SceneRow::State::kDone) out << row.warnings;
+    for (const std::string& name : scores) out << "," << text_of(value_of(row.scores, name));
+    out << "," << csv_cell(row.note) << "\n";
   }
-  return text;
 }
 
-std::string summary_json(const std::vector<SceneRow>& rows, const std::string& options_json) {
-  return summary_of(rows, options_json, false).dump(1, ' ', false, Json::error_handler_t::replace) +
-         "\n";
+void write_summary_json(std::ostream& out, const std::vector<SceneRow>& rows,
+                        const std::string& options_json) {
+  write_json(out, rows, options_json, [](const SceneRow& row) { return json_of(row); });
 }
 
-std::string summary_html(const std::vector<SceneRow>& rows, const std::string& options_json) {
-  return page_with_data(
-      kIndexPage,
-      summary_of(rows, options_json, true).dump(-1, ' ', false, Json::error_handler_t::replace));
+void write_summary_html(std::ostream& out, const std::vector<SceneRow>& rows,
+                        const std::string& options_json, const BatchStore& store) {
+  const std::string page = kIndexPage, mark = "@DATA@";
+  const size_t at = page.find(mark);
+  out << page.substr(0, at);
+  write_json(out, rows, options_json, [&](const SceneRow& row) {
+    Json json = json_of(row);
+    if (row.state == SceneRow::State::kDone)
+      json["thumbnail"] = read_record(store.result(row.scene)).thumbnail;
+    return json;
+  });
+  out << page.substr(at + mark.size());
 }
 
-std::string timings_csv(const std::vector<BatchScene>& scenes, const BatchStore& store) {
-  std::string text = "scene,status,seconds,cpu_seconds,peak_mb,attempts,host,ended\n";
+void write_timings_csv(std::ostream& out, const std::vector<BatchScene>& scenes,
+                       const BatchStore& store) {
+  out << "scene,status,seconds,cpu_seconds,peak_mb,attempts,host,ended\n";
   for (const BatchScene& scene : scenes) {
     const RunRecord run = store.run(scene.name);
     if (run.key.program.empty()) continue;
-    text += csv_cell(scene.name) + "," + std::to_string(run.status) + "," + text_of(run.seconds) +
-            "," + text_of(run.cpu_seconds) + "," + text_of(run.peak_mb) + "," +
-            std::to_string(run.attempts) + "," + csv_cell(run.host) + "," + run.ended + "\n";
+    out << csv_cell(scene.name) << "," << run.status << "," << text_of(run.seconds) << ","
+        << text_of(run.cpu_seconds) << "," << text_of(run.peak_mb) << "," << run.attempts << ","
+        << csv_cell(run.host) << "," << run.ended << "\n";
   }
-  return text;
 }
 
 }  // namespace sketchsplat
