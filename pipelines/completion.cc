@@ -173,7 +173,11 @@ std::string zsh_script(const std::vector<Verb>& verbs, const std::vector<Field>&
   for (const Verb& verb : verbs)
     text += "      " + verb.name + ") _arguments '--help[Show help]'" + zsh_arguments(verb.fields) +
             zsh_arguments(common) + " ;;\n";
-  return text + "    esac ;;\n  esac\n}\ncompdef _sketchsplat sketchsplat\n";
+  // Called as a file of $fpath, it is the function's first call.
+  return text +
+         "    esac ;;\n  esac\n}\n"
+         "if [[ ${funcstack[1]} = _sketchsplat ]]; then\n  _sketchsplat \"$@\"\n"
+         "else\n  compdef _sketchsplat sketchsplat\nfi\n";
 }
 
 // ------------------------------------------------------------------------------------ fish
