@@ -145,8 +145,8 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
   const bool help_word = argc > 1 && std::string(argv[1]) == "help";
 
   if (parser.version) {
-    std::cout << "sketchsplat " << program_version() << "\ncommit " << program_commit()
-              << "\nwith " << library_versions() << "\n";
+    std::cout << "sketchsplat " << program_version() << "\ncommit " << program_commit() << "\nwith "
+              << library_versions() << "\n";
   } else if (parser.markdown) {
     std::cout << options_markdown(verbs);
   } else if (parser.manual) {

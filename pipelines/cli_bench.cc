@@ -99,7 +99,8 @@ void write_axis_charts(const std::vector<Result>& results, const std::string& fo
   }
 }
 
-std::string report_axes(const Suite& suite, const std::vector<BenchRow>& rows, const std::string& out) {
+std::string report_axes(const Suite& suite, const std::vector<BenchRow>& rows,
+                        const std::string& out) {
   const std::vector<AxisResult> limits = axis_results(suite, rows);
   const std::vector<GrowthResult> growth = growth_results(suite, rows);
   std::string tables;

@@ -12,10 +12,10 @@
 #include "datasets/scene.h"
 #include "eval/edge_maps.h"
 #include "eval/map_errors.h"
-#include "pipelines/geometry_files.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/detectors.h"
+#include "pipelines/geometry_files.h"
 #include "pipelines/print_json.h"
 
 namespace sketchsplat {

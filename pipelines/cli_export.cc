@@ -111,7 +111,8 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
   } else if (format == "parametric") {
     write_parametric_edges(out, sketch);
   } else {
-    write_sketch_json(out, sketch, other_members(sketch_file(arguments.sketch), arguments.proposed));
+    write_sketch_json(out, sketch,
+                      other_members(sketch_file(arguments.sketch), arguments.proposed));
   }
 }
 

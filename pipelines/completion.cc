@@ -129,15 +129,19 @@ std::string zsh_escaped(const std::string& text) {
 std::string zsh_action(const Field& field) {
   const std::string name = zsh_escaped(field.unit.empty() ? "value" : field.unit);
   switch (value_of(field)) {
-    case Value::kNone: return "";
+    case Value::kNone:
+      return "";
     case Value::kChoice: {
       std::vector<std::string> words;
       for (const std::string& word : offered(field)) words.push_back(zsh_escaped(word));
       return ":value:(" + joined(words, " ") + ")";
     }
-    case Value::kFolder: return ":" + name + ":_files -/";
-    case Value::kFile: return ":" + name + ":_files";
-    case Value::kAnything: return ":" + name + ": ";
+    case Value::kFolder:
+      return ":" + name + ":_files -/";
+    case Value::kFile:
+      return ":" + name + ":_files";
+    case Value::kAnything:
+      return ":" + name + ": ";
   }
   return "";
 }
@@ -184,7 +188,8 @@ std::string zsh_script(const std::vector<Verb>& verbs, const std::vector<Field>&
 
 std::string fish_quoted(const std::string& text) {
   std::string safe = "'";
-  for (const char c : text) safe += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  for (const char c : text)
+    safe += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   return safe + "'";
 }
 

@@ -58,7 +58,8 @@ std::string manual_page(const std::vector<Verb>& verbs, const std::vector<Field>
       ".SH DESCRIPTION\n"
       "Reads a folder of calibrated images of a CAD object and writes its edges as lines, arcs,\n"
       "circles, ellipses and splines that share their corners: STEP, OBJ and JSON, and a report\n"
-      "to look at. Results go to files and to standard output, everything else to standard error.\n";
+      "to look at. Results go to files and to standard output, everything else to standard "
+      "error.\n";
   for (const Verb& verb : verbs)
     text += ".SH \"" + plain(verb.name) + "\"\n" + plain(verb.summary) + ".\n.PP\n" +
             examples(verb.examples) + options(verb.fields);

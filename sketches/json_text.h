@@ -9,8 +9,8 @@
 
 namespace sketchsplat {
 
-/// Arrays and objects in one another that a file may hold. Ours and everybody's need fewer than ten;
-/// copying and printing values recurses, so that some ten thousand of them end the program.
+/// Arrays and objects in one another that a file may hold. Ours and everybody's need fewer than
+/// ten; copying and printing values recurses, so that some ten thousand of them end the program.
 constexpr int kMostJsonNesting = 100;
 
 /// How deep arrays and objects stand in one another in a text of JSON; brackets in strings do not

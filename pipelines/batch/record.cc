@@ -22,9 +22,17 @@ using Json = nlohmann::ordered_json;
 constexpr char kName[] = "batch.json";
 
 // What of the evaluation is told: keys of `evaluate --json`, with their objects.
-const std::vector<std::string> kScores = {
-    "F5",       "F10",      "F20",      "acc",          "comp",         "fine.F5",
-    "fine.F2",  "fine.F1",  "structure.f", "structure.strokes_per_edge", "structure.right_type"};
+const std::vector<std::string> kScores = {"F5",
+                                          "F10",
+                                          "F20",
+                                          "acc",
+                                          "comp",
+                                          "fine.F5",
+                                          "fine.F2",
+                                          "fine.F1",
+                                          "structure.f",
+                                          "structure.strokes_per_edge",
+                                          "structure.right_type"};
 
 std::string dump(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -43,8 +51,8 @@ Json read_json(const std::string& path) {
 Numbers numbers_in(const Json& object) {
   Numbers numbers;
   for (const auto& [name, value] : object.items())
-    numbers.push_back({name, value.is_number() ? value.get<double>()
-                                               : std::numeric_limits<double>::quiet_NaN()});
+    numbers.push_back(
+        {name, value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN()});
   return numbers;
 }
 
@@ -101,9 +109,7 @@ SceneRecord make_record(const std::string& folder, const std::string& evaluation
 }
 
 void write_record(const std::string& folder, const SceneRecord& record) {
-  Json json = {{"program", "sketchsplat"},
-               {"key", json_of(record.key)},
-               {"format", record.format}};
+  Json json = {{"program", "sketchsplat"}, {"key", json_of(record.key)}, {"format", record.format}};
   json["counts"] = object_of(record.counts);
   json["warnings"] = record.warnings;
   json["scores"] = object_of(record.scores);
@@ -135,27 +141,22 @@ SceneRecord read_record(const std::string& folder) {
 
 bool is_done(const std::string& folder, const SceneKey& key, SceneRecord* record) {
   SceneRecord found = read_record(folder);
-  const bool done =
-      found.key.matches(key) &&
-      std::all_of(found.files.begin(), found.files.end(), [&](const auto& file) {
-        std::error_code error;
-        const std::uintmax_t size = fs::file_size(fs::path(folder) / file.first, error);
-        return !error && size == file.second;
-      });
+  const bool done = found.key.matches(key) &&
+                    std::all_of(found.files.begin(), found.files.end(), [&](const auto& file) {
+                      std::error_code error;
+                      const std::uintmax_t size =
+                          fs::file_size(fs::path(folder) / file.first, error);
+                      return !error && size == file.second;
+                    });
   if (done && record) *record = std::move(found);
   return done;
 }
 
 void write_run(const std::string& path, const RunRecord& run) {
-  const Json json = {{"key", json_of(run.key)},
-                     {"status", run.status},
-                     {"reason", run.reason},
-                     {"attempts", run.attempts},
-                     {"seconds", run.seconds},
-                     {"cpu_seconds", run.cpu_seconds},
-                     {"peak_mb", run.peak_mb},
-                     {"host", run.host},
-                     {"ended", run.ended}};
+  const Json json = {
+      {"key", json_of(run.key)},  {"status", run.status},   {"reason", run.reason},
+      {"attempts", run.attempts}, {"seconds", run.seconds}, {"cpu_seconds", run.cpu_seconds},
+      {"peak_mb", run.peak_mb},   {"host", run.host},       {"ended", run.ended}};
   write_atomically(path, [&](std::ostream& out) { out << dump(json); });
 }
 

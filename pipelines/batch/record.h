@@ -50,8 +50,8 @@ bool is_done(const std::string& folder, const SceneKey& key, SceneRecord* record
 
 /// How the last run of a scene went: differs from run to run.
 struct RunRecord {
-  SceneKey key;    ///< matches none if it was never run
-  int status = 0;   ///< of its process
+  SceneKey key;        ///< matches none if it was never run
+  int status = 0;      ///< of its process
   std::string reason;  ///< why it failed
   int attempts = 0;
   double seconds = 0, cpu_seconds = 0, peak_mb = 0;

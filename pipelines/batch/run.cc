@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "datasets/errors.h"
-#include "datasets/ground_truth.h"
 #include "pipelines/batch/scene_input.h"
 #include "pipelines/batch/signals.h"
 #include "pipelines/batch/worker.h"
@@ -65,14 +64,6 @@ std::string host_name() {
   char name[65] = {};
   gethostname(name, sizeof name - 1);
   return name;
-}
-
-bool has_truth(const std::string& folder) {
-  try {
-    return has_ground_truth(folder);
-  } catch (const std::exception&) {
-    return true;
-  }
 }
 
 // Starts workers, looks after them, and writes down how they ended.

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "datasets/ground_truth.h"
 #include "datasets/scene.h"
 #include "pipelines/hash.h"
 
@@ -79,8 +80,8 @@ bool receive(int pipe, double patience_seconds, Message* message) {
 std::string input_hash(const std::string& folder) {
   std::vector<std::string> lines;
   std::error_code error;
-  const auto options =
-      fs::directory_options::follow_directory_symlink | fs::directory_options::skip_permission_denied;
+  const auto options = fs::directory_options::follow_directory_symlink |
+                       fs::directory_options::skip_permission_denied;
   fs::recursive_directory_iterator entry(folder, options, error), end;
   if (error) return "";
   for (; !error && entry != end; entry.increment(error)) {
@@ -97,6 +98,14 @@ std::string input_hash(const std::string& folder) {
   std::string all;
   for (const std::string& line : lines) all += line;
   return hash_of(all);
+}
+
+bool has_truth(const std::string& folder) {
+  try {
+    return has_ground_truth(folder);
+  } catch (const std::exception&) {
+    return true;  // `evaluate` will say what is wrong with it
+  }
 }
 
 std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes, const std::string& format,

@@ -7,10 +7,7 @@
 namespace sketchsplat {
 
 Schedule::Schedule(const std::vector<Load>& loads, int places, double memory_mb)
-    : loads_(loads),
-      waiting_(loads.size()),
-      places_(places),
-      memory_mb_(memory_mb) {
+    : loads_(loads), waiting_(loads.size()), places_(places), memory_mb_(memory_mb) {
   std::iota(waiting_.begin(), waiting_.end(), 0);
   std::stable_sort(waiting_.begin(), waiting_.end(),
                    [&](int a, int b) { return loads_[a].seconds > loads_[b].seconds; });

@@ -99,14 +99,11 @@ void BatchStore::refuse_other_counts(int count) const {
     const bool held = flock(file, LOCK_EX | LOCK_NB) != 0;
     const std::string who = holder(file);
     close(file);
-    if (held)
-      throw OutputError(out_, "a batch of another number of shards at work there" + who);
+    if (held) throw OutputError(out_, "a batch of another number of shards at work there" + who);
   }
 }
 
-std::string BatchStore::running(const std::string& scene) const {
-  return own("running/" + scene);
-}
+std::string BatchStore::running(const std::string& scene) const { return own("running/" + scene); }
 
 std::string BatchStore::make_running(const std::string& scene) const {
   forget_running(scene);

@@ -17,8 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<std::string> kCounts = {"views",    "curves",        "lines",   "arcs",     "circles",
-                                          "ellipses", "elliptic_arcs", "beziers", "junctions"};
+const std::vector<std::string> kCounts = {"views",         "curves",  "lines",
+                                          "arcs",          "circles", "ellipses",
+                                          "elliptic_arcs", "beziers", "junctions"};
 
 std::string state_name(SceneRow::State state) {
   if (state == SceneRow::State::kDone) return "done";
@@ -124,7 +125,8 @@ SceneRow scene_row(const BatchScene& scene, const SceneKey& key, const BatchStor
   if (is_done(store.result(scene.name), key, &record)) {
     row.state = SceneRow::State::kDone;
     row.format = record.format;
-    for (const std::string& name : kCounts) row.counts.push_back({name, value_of(record.counts, name)});
+    for (const std::string& name : kCounts)
+      row.counts.push_back({name, value_of(record.counts, name)});
     row.warnings = record.warnings;
     row.scores = record.scores;
     row.note = record.note;

@@ -53,7 +53,11 @@ std::string thumbnail_path(const std::string& parametric_edges) {
     for (int i = 0; i < curve.cols(); ++i) {
       const Eigen::Vector2d p = (curve.col(i) - box.center()) * scale;
       char text[64];
-      std::snprintf(text, sizeof text, "%s%.1f %.1f", i == 0 ? "M" : i > 1 ? " " : curve.cols() > 2 ? "C" : "L",
+      std::snprintf(text, sizeof text, "%s%.1f %.1f",
+                    i == 0             ? "M"
+                    : i > 1            ? " "
+                    : curve.cols() > 2 ? "C"
+                                       : "L",
                     kSide / 2 + p.x() + 0.0, kSide / 2 - p.y() + 0.0);
       path += text;
     }

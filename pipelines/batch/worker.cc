@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "datasets/errors.h"
-#include "datasets/ground_truth.h"
+#include "pipelines/batch/scene_input.h"
 #include "pipelines/cli.h"
 
 namespace sketchsplat {
@@ -20,14 +20,6 @@ namespace fs = std::filesystem;
 // A folder that begins with a dash must not be taken for an option.
 std::string as_argument(const std::string& folder) {
   return folder[0] == '-' ? "./" + folder : folder;
-}
-
-bool has_truth(const std::string& folder) {
-  try {
-    return has_ground_truth(folder);
-  } catch (const std::exception&) {
-    return true;  // `evaluate` will say what is wrong with it
-  }
 }
 
 // An output error that no other scene would escape.

@@ -29,7 +29,8 @@ class Batch : public Program {
     for (const char* name : {"a/box", "a/ring", "b/box"})
       Program::run_in(scenes_ / ".made",
                       "synthesize box --views 12 --resolution 160 --outputs none --quiet --seed " +
-                          std::to_string(name[0] + name[2]) + " --out " + (scenes_ / name).string());
+                          std::to_string(name[0] + name[2]) + " --out " +
+                          (scenes_ / name).string());
   }
   static void TearDownTestSuite() { fs::remove_all(scenes_); }
 
@@ -203,7 +204,8 @@ TEST_F(Batch, SecondBatchOnOneFolderIsRefusedInOneLine) {
   Outcome o = batch("");
   EXPECT_EQ(o.status, kNoOutput);
   EXPECT_EQ(count_lines(o.err), 1) << o.err;
-  EXPECT_THAT(o.err, AllOf(HasSubstr(in_folder("results")), HasSubstr("another batch at work there")));
+  EXPECT_THAT(o.err,
+              AllOf(HasSubstr(in_folder("results")), HasSubstr("another batch at work there")));
   EXPECT_EQ(batch("--shard 1/2").status, kNoOutput);
   close(lock);
   lock = held("lock", LOCK_SH);
@@ -293,9 +295,8 @@ TEST_F(Batch, ResultsOfReconstructAreReplaced) {
 }
 
 TEST_F(Batch, WrongUsageAndInputAreOneLine) {
-  for (const char* arguments :
-       {"--shard 0/2", "--shard 3/2", "--shard 1/2x", "--shard half", "--shard 1/2 --merge",
-        "--lift-views many", "--frobnicate"})
+  for (const char* arguments : {"--shard 0/2", "--shard 3/2", "--shard 1/2x", "--shard half",
+                                "--shard 1/2 --merge", "--lift-views many", "--frobnicate"})
     EXPECT_EQ(batch(arguments).status, kWrongUsage) << arguments;
   EXPECT_EQ(run("batch --out x").status, kWrongUsage) << "no root";
   EXPECT_EQ(run("batch " + scenes_.string() + " --out " + scenes_.string()).status, kWrongUsage);

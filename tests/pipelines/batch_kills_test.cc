@@ -50,8 +50,8 @@ class BatchKills : public Program {
     }
   }
   std::vector<std::string> command(const std::string& out) const {
-    return {"batch",     scenes_.string(), "--out", in_folder(out), "--preset", "fast",
-            "--retries", "1"};
+    return {"batch",    scenes_.string(), "--out",     in_folder(out),
+            "--preset", "fast",           "--retries", "1"};
   }
 
   fs::path scenes_;
@@ -70,7 +70,8 @@ TEST_F(BatchKills, LoseNothing) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     const int status = whole.wait();
-    ASSERT_TRUE(WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == kSomeFailed))
+    ASSERT_TRUE(WIFEXITED(status) &&
+                (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == kSomeFailed))
         << text_of_file(folder_ / "err");
   }
   const double seconds = seconds_since(began);
@@ -85,8 +86,8 @@ TEST_F(BatchKills, LoseNothing) {
     ++starts;
     Running batch(command("results"), in_folder("err"));
     while (!batch.ended()) {
-      std::this_thread::sleep_for(std::chrono::duration<double>(
-          std::uniform_real_distribution<>(0, 2 * pause)(random)));
+      std::this_thread::sleep_for(
+          std::chrono::duration<double>(std::uniform_real_distribution<>(0, 2 * pause)(random)));
       if (batch.ended() || workers_killed + batches_killed >= kills) continue;
       const std::vector<pid_t> workers = batch.children();
       if (random() % 2 == 0) {

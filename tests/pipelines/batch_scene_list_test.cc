@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/batch/scene_list.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,6 +8,7 @@
 #include "datasets/errors.h"
 #include "datasets/image_io.h"
 #include "pipelines/batch/scene_input.h"
+#include "pipelines/batch/scene_list.h"
 #include "pipelines/fields.h"
 #include "tests/datasets/temp_folder.h"
 
@@ -159,10 +158,11 @@ TEST(SceneSizes, AreThoseOfTheHeadersAndBrokenScenesHaveNone) {
   };
   folder.write("broken/meta_data.json", "{");
   int steps = 0;
-  const std::vector<SceneSize> sizes =
-      scene_sizes({scene("two", 2), {"broken", folder.path() + "/broken"},
-                   {"gone", folder.path() + "/gone"}, scene("three", 3)},
-                  "", 60, [&] { ++steps; });
+  const std::vector<SceneSize> sizes = scene_sizes({scene("two", 2),
+                                                    {"broken", folder.path() + "/broken"},
+                                                    {"gone", folder.path() + "/gone"},
+                                                    scene("three", 3)},
+                                                   "", 60, [&] { ++steps; });
   ASSERT_EQ(sizes.size(), 4u);
   EXPECT_EQ(sizes[0].views, 2);
   EXPECT_EQ(sizes[0].pixels, 2 * 8 * 6);

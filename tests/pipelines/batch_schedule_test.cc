@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/batch/schedule.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipelines/batch/schedule.h"
 #include "pipelines/estimate.h"
 #include "pipelines/resources.h"
 #include "tests/datasets/temp_folder.h"

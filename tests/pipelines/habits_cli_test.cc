@@ -22,11 +22,13 @@ class Habits : public Program {
   static void SetUpTestSuite() {
     part_ = fs::temp_directory_path() / ("sketchsplat_habits." + std::to_string(getpid()));
     fs::create_directories(part_);
-    made_ = Program::run_in(part_, "synthesize box --views 12 --resolution 160 --outputs edges "
-                                   "--json --out " + (part_ / "scene").string());
-    result_ = Program::run_in(part_, "reconstruct " + (part_ / "scene").string() +
-                                         " --preset fast --json --out " +
-                                         (part_ / "result").string());
+    made_ = Program::run_in(part_,
+                            "synthesize box --views 12 --resolution 160 --outputs edges "
+                            "--json --out " +
+                                (part_ / "scene").string());
+    result_ =
+        Program::run_in(part_, "reconstruct " + (part_ / "scene").string() +
+                                   " --preset fast --json --out " + (part_ / "result").string());
   }
   static void TearDownTestSuite() { fs::remove_all(part_); }
 
@@ -68,14 +70,16 @@ TEST_F(Habits, EveryVerbWritesItsResultsAsJsonIfAsked) {
       json::parse(run("detect " + scene() + " --score --json --out " + in_folder("maps")).out);
   EXPECT_EQ(maps["maps"], 12);
   EXPECT_GT(maps["score"]["f"], 50);
-  const json file = json::parse(run("export " + result() + " --json --out " + in_folder("a.dxf")).out);
+  const json file =
+      json::parse(run("export " + result() + " --json --out " + in_folder("a.dxf")).out);
   EXPECT_EQ(file["format"], "dxf");
   EXPECT_GT(file["curves"], 8);
   EXPECT_EQ(file["left_out"], 0);
   const std::string pair = "evaluate --pred " + result() + " --gt " + scene();
   const json numbers = json::parse(run(pair + " --json").out);
   EXPECT_GT(numbers["F5"], 80);
-  EXPECT_EQ(json::parse(run("evaluate --json --gt " + scene() + " --pred " + result()).out), numbers);
+  EXPECT_EQ(json::parse(run("evaluate --json --gt " + scene() + " --pred " + result()).out),
+            numbers);
   EXPECT_EQ(json::parse(run("--json " + pair).out), numbers) << "before the verb";
   const Outcome both = run(pair + " --json " + in_folder("numbers.json"));
   EXPECT_THAT(both.out, HasSubstr("F20")) << "with a file the table stays";
@@ -104,7 +108,8 @@ TEST_F(Habits, DryRunSaysWhatWouldBeReadAndWritesNothing) {
 
 TEST_F(Habits, TheLogHasWhatIsSaidAndWhyItEnded) {
   const std::string log = in_folder("log");
-  ASSERT_EQ(run("detect " + scene() + " -q --log " + log + " --out " + in_folder("maps")).status, 0);
+  ASSERT_EQ(run("detect " + scene() + " -q --log " + log + " --out " + in_folder("maps")).status,
+            0);
   EXPECT_EQ(run("detect " + in_folder("gone") + " --log " + log + " --out x").status, kBadInput);
   EXPECT_THAT(text_of_file(log), AllOf(HasSubstr(" detect  "), HasSubstr("a scene folder")));
   EXPECT_EQ(run("detect " + scene() + " --log /proc/none/log --out " + in_folder("x")).status,
@@ -125,7 +130,8 @@ TEST_F(Habits, WarningsComeAgainAtTheEnd) {
 TEST_F(Habits, ColourIsForTerminalsOnly) {
   if (!has("script")) GTEST_SKIP() << "nothing here makes a terminal (script)";
   const std::string wrong = "detect " + in_folder("gone") + " --out x";
-  EXPECT_THAT(on_terminal("TERM=xterm NO_COLOR=", wrong), HasSubstr("\033[31msketchsplat:\033[0m "));
+  EXPECT_THAT(on_terminal("TERM=xterm NO_COLOR=", wrong),
+              HasSubstr("\033[31msketchsplat:\033[0m "));
   EXPECT_THAT(on_terminal("TERM=xterm NO_COLOR=1", wrong), Not(HasSubstr("\033[3")));
   EXPECT_THAT(on_terminal("TERM=dumb NO_COLOR=", wrong), Not(HasSubstr("\033[")));
   EXPECT_EQ(run(wrong).err.find('\033'), std::string::npos);
@@ -142,7 +148,8 @@ class Completion : public Habits {
                                    << "compopt() { :; }\nCOMP_WORDS=(" << words
                                    << ")\nCOMP_CWORD=$((${#COMP_WORDS[@]}-1))\n_sketchsplat\n"
                                    << "printf '%s\\n' \"${COMPREPLY[@]}\"\n";
-    std::istringstream lines(shell("cd '" + part_.string() + "' && bash '" + in_folder("try") + "'"));
+    std::istringstream lines(
+        shell("cd '" + part_.string() + "' && bash '" + in_folder("try") + "'"));
     std::vector<std::string> all;
     for (std::string line; std::getline(lines, line);)
       if (!line.empty()) all.push_back(line);
@@ -192,16 +199,18 @@ TEST_F(Habits, TheManualHoldsEveryVerbAndOption) {
   const std::string options = text_of_file(fs::path(SKETCHSPLAT_SOURCE_DIR) / "OPTIONS.md");
   const std::regex flag("\\| `(-., )?--(\\[no-\\])?([a-z0-9-]+)");
   int flags = 0;
-  for (std::sregex_iterator it(options.begin(), options.end(), flag), end; it != end; ++it, ++flags) {
+  for (std::sregex_iterator it(options.begin(), options.end(), flag), end; it != end;
+       ++it, ++flags) {
     const std::string name = std::regex_replace((*it)[3].str(), std::regex("-"), "\\-");
     EXPECT_THAT(page, HasSubstr(name));
   }
   EXPECT_GT(flags, 100);
   if (!has("man")) GTEST_SKIP() << "no man here to read it";
   std::ofstream(folder_ / "page.1") << page;
-  EXPECT_EQ(shell("LC_ALL=C.UTF-8 MANROFFSEQ='' MANWIDTH=100 man --warnings -E UTF-8 -l -Tutf8 -Z '" +
-                  in_folder("page.1") + "' 2>&1 >/dev/null"),
-            "");
+  EXPECT_EQ(
+      shell("LC_ALL=C.UTF-8 MANROFFSEQ='' MANWIDTH=100 man --warnings -E UTF-8 -l -Tutf8 -Z '" +
+            in_folder("page.1") + "' 2>&1 >/dev/null"),
+      "");
 }
 
 TEST_F(Habits, TheVersionNamesCommitAndLibraries) {

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -68,8 +67,8 @@ TEST(Progress, BarTellsTheTimeLeftByTheShareOfTheWork) {
   progress.share(0.5);
   std::this_thread::sleep_for(std::chrono::milliseconds(110));
   progress.step();
-  EXPECT_THAT(GetCapturedStderr(), testing::AnyOf(HasSubstr("2/100, 3 s left"),
-                                                  HasSubstr("2/100, 4 s left")));
+  EXPECT_THAT(GetCapturedStderr(),
+              testing::AnyOf(HasSubstr("2/100, 3 s left"), HasSubstr("2/100, 4 s left")));
 }
 
 TEST(Progress, DurationsAreRough) {
