@@ -36,6 +36,17 @@ struct Camera {
     return {part_width, part_height, fx, fy, cx - x0, cy - y0};
   }
 
+  /// Of the picture that read_picture makes with this denominator: blocks of pixels become one.
+  Camera shrunk(int denominator) const {
+    const double d = denominator;
+    return {(width + denominator - 1) / denominator,
+            (height + denominator - 1) / denominator,
+            fx / d,
+            fy / d,
+            (cx + 0.5) / d - 0.5,
+            (cy + 0.5) / d - 0.5};
+  }
+
   bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= width - 1 && pixel.y() <= height - 1;
   }

@@ -37,16 +37,25 @@ void leave_out_far_views(Scene* scene) {
   const double size = median(distances);
   if (!(size > 0)) return;
   std::vector<View> near;
+  std::vector<int> index(scene->views.size(), -1);  // of a view that stays
   for (size_t i = 0; i < scene->views.size(); ++i) {
     const View& view = scene->views[i];
     const double focal = std::max(view.camera.fx, view.camera.fy);
-    if (focal * size >= kLeastPixels * distances[i])
+    if (focal * size >= kLeastPixels * distances[i]) {
+      index[i] = int(near.size());
       near.push_back(view);
-    else
+    } else {
       scene->warnings.push_back("frame " + view.name +
                                 " is left out: its camera is too far away to see anything");
+    }
   }
   scene->views = std::move(near);
+  for (ScenePoint& point : scene->points) {
+    std::vector<int> seen;
+    for (const int view : point.views)
+      if (index[view] >= 0) seen.push_back(index[view]);
+    point.views = std::move(seen);
+  }
 }
 
 }  // namespace sketchsplat

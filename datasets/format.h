@@ -18,5 +18,7 @@ struct SceneFormat {
 
 extern const SceneFormat kAbcNefFormat;  ///< abc_nef.cc
 extern const SceneFormat kNerfFormat;    ///< nerf.cc
+extern const SceneFormat kNerfstudioFormat;  ///< nerfstudio.cc
+extern const SceneFormat kColmapFormat;      ///< colmap.cc
 
 }  // namespace sketchsplat

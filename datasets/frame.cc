@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "datasets/errors.h"
@@ -76,7 +77,7 @@ bool complete_size(Frame* frame) {
   return true;
 }
 
-void add_frame(const Frame& frame, Scene* scene) {
+bool add_frame(const Frame& frame, Scene* scene) {
   Frame f = frame;
   std::string complaint;
   const std::string name = f.image_path.empty() ? "" : unique_name(f, *scene);
@@ -89,10 +90,11 @@ void add_frame(const Frame& frame, Scene* scene) {
   } else {
     complaint = complaint_about_pose(f.world_from_cam);
     if (complaint.empty()) complaint = complaint_about_intrinsics(f.intrinsics);
+    if (complaint.empty() && !f.lens.is_finite()) complaint = "its distortion is not finite";
   }
   if (!complaint.empty()) {
     scene->warnings.push_back("frame " + f.name + " is left out: " + complaint);
-    return;
+    return false;
   }
   const Eigen::Matrix3d& K = f.intrinsics;
   Pose world_from_cam;
@@ -103,7 +105,10 @@ void add_frame(const Frame& frame, Scene* scene) {
   view.image_path = f.image_path;
   view.camera = {f.size.width, f.size.height, K(0, 0), K(1, 1), K(0, 2), K(1, 2)};
   view.cam_from_world = world_from_cam.inverse();
+  view.lens = f.lens;
+  view.mask_path = f.mask_path;
   scene->views.push_back(view);
+  return true;
 }
 
 std::string find_image(const std::string& folder, const std::string& name) {
@@ -114,6 +119,50 @@ std::string find_image(const std::string& folder, const std::string& name) {
     if (fs::is_regular_file(candidate, none)) return candidate.string();
   }
   return "";
+}
+
+std::string find_mask(const std::string& folder, const std::string& name) {
+  const fs::path path = (fs::path(folder) / name).lexically_normal();
+  std::error_code none;
+  for (const fs::path& candidate :
+       {path, fs::path(path.string() + ".png"), fs::path(path).replace_extension(".png")}) {
+    if (fs::is_regular_file(candidate, none)) return candidate.string();
+  }
+  return "";
+}
+
+std::vector<std::string> list_images(const std::string& folder, bool deep) {
+  std::vector<std::string> names;
+  const auto look_at = [&](const fs::directory_entry& entry) {
+    std::string ending = entry.path().extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    std::error_code none;
+    for (const char* known : {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp"})
+      if (ending == known && entry.is_regular_file(none))
+        names.push_back(entry.path().lexically_relative(folder).string());
+  };
+  std::error_code none;
+  if (deep) {
+    for (auto it = fs::recursive_directory_iterator(folder, none);
+         !none && it != fs::recursive_directory_iterator(); it.increment(none))
+      look_at(*it);
+  } else {
+    for (auto it = fs::directory_iterator(folder, none); !none && it != fs::directory_iterator();
+         it.increment(none))
+      look_at(*it);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void warn_of(const std::string& what, const std::vector<std::string>& names, Scene* scene) {
+  constexpr size_t kMost = 3;
+  if (names.empty()) return;
+  std::string some;
+  for (size_t i = 0; i < std::min(names.size(), kMost); ++i) some += (i ? ", " : "") + names[i];
+  if (names.size() > kMost) some += ", ...";
+  scene->warnings.push_back(what + ": " + std::to_string(names.size()) + " (" + some + ")");
 }
 
 }  // namespace sketchsplat

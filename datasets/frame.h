@@ -15,16 +15,30 @@ struct Frame {
   ImageSize size;          ///< [px]; 0 x 0: ask the image
   Eigen::Matrix3d intrinsics = Eigen::Matrix3d::Identity();      ///< pixel centres are integers
   Eigen::Matrix4d world_from_cam = Eigen::Matrix4d::Identity();  ///< axes of Camera
+  Lens lens;
+  std::string mask_path;  ///< empty if there is none
 };
 
 /// Asks the header of the image for a size that is not known. Returns false if it has none.
 bool complete_size(Frame* frame);
 
 /// Appends the view of a frame to the scene, or a warning that names the frame and says what is
-/// wrong with it.
-void add_frame(const Frame& frame, Scene* scene);
+/// wrong with it. Returns whether there is a view.
+bool add_frame(const Frame& frame, Scene* scene);
 
 /// First of folder/name, then folder/name with the usual extensions, that is a file; empty if none.
 std::string find_image(const std::string& folder, const std::string& name);
+
+/// First of folder/name, folder/name.png, folder/name with .png for its extension that is a file;
+/// empty if none.
+std::string find_mask(const std::string& folder, const std::string& name);
+
+/// Names of the files below a folder that look like images, relative to it, sorted; the folder
+/// itself alone unless `deep`.
+std::vector<std::string> list_images(const std::string& folder, bool deep);
+
+/// "images without a pose: 5 (a.jpg, b.jpg, c.jpg, ...)" into the warnings of the scene; nothing if
+/// there are no names.
+void warn_of(const std::string& what, const std::vector<std::string>& names, Scene* scene);
 
 }  // namespace sketchsplat

@@ -13,7 +13,9 @@
 
 #include "datasets/errors.h"
 #include "datasets/image_plugin.h"
+#include "datasets/jpeg_codec.h"
 #include "datasets/png_codec.h"
+#include "datasets/shrink_planes.h"
 
 namespace sketchsplat {
 namespace {
@@ -40,21 +42,20 @@ File open_image(const std::string& path, size_t* size) {
   return file;
 }
 
-bool is_png(FILE* file) {
-  char signature[8];
-  const size_t n = std::fread(signature, 1, sizeof signature, file);
+bool begins_with(const std::string& signature, FILE* file) {
+  char head[8] = {};
+  const size_t n = std::fread(head, 1, signature.size(), file);
   std::rewind(file);
-  return n == sizeof signature && std::memcmp(signature, "\x89PNG\r\n\x1a\n", n) == 0;
+  return signature.compare(0, std::string::npos, head, n) == 0;
 }
+bool is_png(FILE* file) { return begins_with("\x89PNG\r\n\x1a\n", file); }
+bool is_jpeg(FILE* file) { return begins_with("\xff\xd8\xff", file); }
 
-// -------------------------------------------------------------------------- everything else
+// -------------------------------------------------------------------- JPEG, everything else
 
 /// Decoders of JPEG fill what is missing with grey and say nothing. After the last start of a scan
 /// (FF DA) there must be an end of image (FF D9); compressed data hold neither by chance.
-void check_jpeg_is_whole(const std::string& path, FILE* file, size_t size) {
-  std::string bytes(size, '\0');
-  bytes.resize(std::fread(&bytes[0], 1, size, file));
-  if (bytes.compare(0, 3, "\xff\xd8\xff") != 0) return;
+void check_jpeg_is_whole(const std::string& path, const std::string& bytes) {
   const size_t scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
   if (end == std::string::npos || (scan != std::string::npos && end < scan)) {
     throw InputError(path, "a whole JPEG image", "a broken one (no end)");
@@ -73,18 +74,32 @@ Planes read_by_plugin(const std::string& path, bool header_only) {
   return planes;
 }
 
-Planes read_planes(const std::string& path) {
+/// False if it is no JPEG, or one of a kind that libjpeg does not turn into RGB.
+bool read_jpeg(const std::string& path, FILE* file, size_t size, int denominator, Planes* planes) {
+  if (!is_jpeg(file)) return false;
+  std::string bytes(size, '\0');
+  bytes.resize(std::fread(&bytes[0], 1, size, file));
+  check_jpeg_is_whole(path, bytes);
+  std::string found;
+  if (decode_jpeg(bytes, denominator, planes, &found)) return true;
+  if (!found.empty()) throw InputError(path, "a whole JPEG image", "a broken one (" + found + ")");
+  return false;
+}
+
+Planes read_planes(const std::string& path, int denominator) {
   size_t size = 0;
   const File file = open_image(path, &size);
-  if (!is_png(file.get())) {
-    check_jpeg_is_whole(path, file.get(), size);
-    return read_by_plugin(path, false);
-  }
   Planes planes;
-  std::string found;
-  if (!decode_png(file.get(), size, &planes, &found)) {
-    throw InputError(path, "a whole PNG image", "a broken one (" + found + ")");
+  if (is_png(file.get())) {
+    std::string found;
+    if (!decode_png(file.get(), size, &planes, &found))
+      throw InputError(path, "a whole PNG image", "a broken one (" + found + ")");
+  } else if (read_jpeg(path, file.get(), size, denominator, &planes)) {
+    return planes;
+  } else {
+    planes = read_by_plugin(path, false);
   }
+  shrink_planes(denominator, &planes);
   return planes;
 }
 
@@ -123,8 +138,8 @@ Image<float> as_image(int width, int height, std::vector<float> data) {
 
 }  // namespace
 
-Picture read_picture(const std::string& path) {
-  Planes p = read_planes(path);
+Picture read_picture(const std::string& path, int denominator) {
+  Planes p = read_planes(path, denominator);
   const bool grey = p.channels <= 2;
   Picture picture;
   if (p.channels % 2 == 0)
@@ -135,8 +150,8 @@ Picture read_picture(const std::string& path) {
   return picture;
 }
 
-Image<float> read_grey(const std::string& path) {
-  Planes p = read_planes(path);
+Image<float> read_grey(const std::string& path, int denominator) {
+  Planes p = read_planes(path, denominator);
   std::vector<float>& grey = p.plane[0];
   if (p.channels >= 3) {
     for (size_t i = 0; i < grey.size(); ++i) {
@@ -149,11 +164,12 @@ Image<float> read_grey(const std::string& path) {
 ImageSize read_image_size(const std::string& path) {
   size_t size = 0;
   const File file = open_image(path, &size);
+  ImageSize found;
   if (!is_png(file.get())) {
+    if (is_jpeg(file.get()) && jpeg_size(file.get(), &found.width, &found.height)) return found;
     const Planes planes = read_by_plugin(path, true);
     return {planes.width, planes.height};
   }
-  ImageSize found;
   if (!png_size(file.get(), &found.width, &found.height)) {
     throw InputError(path, "a whole PNG image", "a broken one (no header)");
   }

@@ -10,13 +10,15 @@ namespace sketchsplat {
 // All functions may be called from many threads at once; none starts threads of its own.
 
 /// Reads an image file: 8 or 16 bit grey, grey + alpha, RGB, RGBA -> [0, 1], alpha not
-/// premultiplied, samples as stored (no gamma, no rotation by EXIF). PNG is decoded by libpng; for
-/// anything else OpenImageIO is loaded on the first call. Throws InputError if the file is missing,
-/// truncated or no image.
-Picture read_picture(const std::string& path);
+/// premultiplied, samples as stored (no gamma, no rotation by EXIF: models are calibrated on the
+/// rows as they lie in the file). PNG is decoded by libpng, JPEG by libjpeg; for anything else
+/// OpenImageIO is loaded on the first call. A `denominator` of 2, 4 or 8 gives a picture so much
+/// smaller, rounded up (see Camera::shrunk), for a fraction of the time if the file is JPEG; blocks
+/// are averaged otherwise. Throws InputError if the file is missing, truncated or no image.
+Picture read_picture(const std::string& path, int denominator = 1);
 
 /// Reads one grey channel in [0, 1] (mean of the colours, alpha not looked at). Throws InputError.
-Image<float> read_grey(const std::string& path);
+Image<float> read_grey(const std::string& path, int denominator = 1);
 
 /// Width and height [px] from the header of an image file. Throws InputError.
 struct ImageSize {

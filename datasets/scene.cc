@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// In the order in which open_scene looks for their markers.
-constexpr const SceneFormat* kFormats[] = {&kAbcNefFormat, &kNerfFormat};
+constexpr const SceneFormat* kFormats[] = {&kAbcNefFormat, &kNerfFormat, &kNerfstudioFormat,
+                                            &kColmapFormat};
 
 const SceneFormat& find_format(const std::string& folder, const std::string& name) {
   std::string known, markers;
@@ -87,17 +88,6 @@ std::vector<std::string> scene_formats() {
   std::vector<std::string> names;
   for (const SceneFormat* format : kFormats) names.push_back(format->name);
   return names;
-}
-
-Picture read_picture(const View& view) {
-  Picture picture = read_picture(view.image_path);
-  const auto text = [](int w, int h) { return std::to_string(w) + " x " + std::to_string(h); };
-  if (picture.width() != view.camera.width || picture.height() != view.camera.height) {
-    throw InputError(view.image_path,
-                     "an image of " + text(view.camera.width, view.camera.height) + " px",
-                     text(picture.width(), picture.height()));
-  }
-  return picture;
 }
 
 std::string edge_map_path(const Scene& scene, const View& view, const std::string& detector) {

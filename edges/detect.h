@@ -8,7 +8,8 @@
 
 namespace sketchsplat {
 
-/// A point on an edge of an image, localised to a fraction of a pixel.
+/// A point on an edge of an image, localised to a fraction of a pixel. In the pixels of the image
+/// as it is found, in the ideal ones of the view (see View) for everybody else: undistort.h.
 struct Edgel {
   float x = 0, y = 0;    ///< [px], centre of the top-left pixel is (0, 0)
   float nx = 0, ny = 0;  ///< unit normal, towards the brighter side
@@ -23,7 +24,8 @@ struct EdgelMap {
   std::vector<Edgel> edgels;  ///< chain after chain
   std::vector<int> chain;     ///< C + 1: chain c is edgels chain[c] .. chain[c + 1] - 1
   float noise = 0;            ///< measured noise of the image, grey values in [0, 1]
-  Image<uint8_t> mask;        ///< 1 on the object, 0 elsewhere; empty if the image has no alpha
+  Image<uint8_t> mask;        ///< 1 on the object, 0 elsewhere, in pixels of the image, never
+                              ///< undistorted; empty if the image has no alpha
 
   // Look-up window: the bounding box of the edgels plus the reach.
   int x0 = 0, y0 = 0, window_width = 0, window_height = 0;

@@ -36,6 +36,18 @@ Share share(const Image<int>& sum, double x, double y, double r) {
   return held == 0 ? kNone : held == (x1 - x0) * (y1 - y0) ? kAll : kSome;
 }
 
+// The same around an ideal pixel; masks are in the pixels of the image.
+Share share(const Image<int>& sum, const View& view, const Eigen::Vector2d& ideal, double r) {
+  if (view.lens.is_identity()) return share(sum, ideal.x(), ideal.y(), r);
+  Eigen::Vector2d image;
+  Eigen::Matrix2d J;
+  if (!view.image_pixel(ideal, &image, &J)) return kSome;
+  // At least what a length can grow by, and hardly more: the spectral norm is no larger.
+  const double growth = std::sqrt(J.cwiseAbs().rowwise().sum().maxCoeff() *
+                                  J.cwiseAbs().colwise().sum().maxCoeff());
+  return share(sum, image.x(), image.y(), r * growth);
+}
+
 constexpr double kSurroundings = 2.5;  // cells
 
 }  // namespace
@@ -62,7 +74,7 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
       double z;
       const Eigen::Vector2d q = v.project(p, &z);
       if (!(z > 0)) continue;
-      const Share here = share(sums[m], q.x(), q.y(), radius * v.camera.fx / z);
+      const Share here = share(sums[m], v, q, radius * v.camera.fx / z);
       if (here == kNone) return kNone;
       if (here == kSome && cut) cut->push_back(m);
       least = std::min(least, here);

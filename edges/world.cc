@@ -24,6 +24,19 @@ Eigen::Vector3d meeting_point(const std::vector<View>& views) {
   return A.ldlt().solve(b);
 }
 
+// Half of what a view sees, at distance 1.
+double half_field(const View& v) {
+  const Camera& c = v.camera;
+  double half = 0.5 * std::max(c.width / c.fx, c.height / c.fy);
+  if (v.lens.is_identity()) return half;
+  for (int k = 0; k < 9; ++k) {  // corners, and where sides may bulge
+    Eigen::Vector2d ideal;
+    if (v.ideal_pixel({(c.width - 1) * (k % 3) / 2.0, (c.height - 1) * (k / 3) / 2.0}, &ideal))
+      half = std::max(half, c.ray(ideal).head<2>().cwiseAbs().maxCoeff());
+  }
+  return half;
+}
+
 struct PixelBox {
   double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
 };
@@ -80,8 +93,7 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
   double reach = 0;
   for (const View& v : world.views) {
     const double z = (v.cam_from_world * middle).z();
-    const double half = 0.5 * std::max(v.camera.width / v.camera.fx, v.camera.height / v.camera.fy);
-    if (z > 0) reach = std::max(reach, z * half);
+    if (z > 0) reach = std::max(reach, z * half_field(v));
   }
   Eigen::AlignedBox3d cube(middle - Eigen::Vector3d::Constant(reach),
                            middle + Eigen::Vector3d::Constant(reach));

@@ -65,8 +65,10 @@ void check_required(const Verb& verb, const Texts& texts) {
   for (const Field& field : verb.fields)
     if (field.alone && texts.count(field.name)) return;
   for (const Field& field : verb.fields) {
-    if (!field.required || texts.count(field.name)) continue;
-    const std::string what = field.positional ? field.unit : "--" + field.name + " " + field.unit;
+    if (!field.required || texts.count(field.name) || texts.count(field.unless)) continue;
+    std::string what = field.positional ? field.unit : "--" + field.name + " " + field.unit;
+    if (const Field* other = find_field(verb.fields, field.unless))
+      what += " or --" + other->name + " " + other->unit;
     throw UsageError(verb.name + " needs " + what + "; usage: " + usage_line(verb));
   }
 }

@@ -10,6 +10,7 @@
 #include "datasets/errors.h"
 #include "datasets/geometry_maps.h"
 #include "datasets/scene.h"
+#include "edges/undistort.h"
 #include "eval/edge_maps.h"
 #include "eval/map_errors.h"
 #include "pipelines/atomic_file.h"
@@ -24,7 +25,7 @@ namespace {
 constexpr double kTolerance = 1.5;  // [px] of --score
 
 struct DetectArguments {
-  std::string scene, out, format;
+  std::string scene, out, format, masks;
   DetectionOptions detection;
   double ridge_px = 0.7;  // half of the width in which people and networks draw edges
   bool score = false;
@@ -49,15 +50,18 @@ std::string map_folder(const DetectArguments& arguments) {
 void write_map(const View& view, const EdgelMap& map, const DetectArguments& arguments) {
   // Edge maps are PNG, whatever the picture was.
   const std::string name = std::filesystem::path(view.name).replace_extension(".png").string();
-  write_png(map_folder(arguments) + "/" + name, draw_edge_map(map, arguments.ridge_px));
+  write_png(map_folder(arguments) + "/" + name,
+            draw_edge_map(distort_edgels(map, view), arguments.ridge_px));
 }
 
 EdgeMapScore score_view(const Scene& scene, const View& view, const EdgelMap& map) {
   const std::string folder = scene.folder + "/edges_visible";
   const std::string path = file_of_view(folder, view, ".json");
   if (path.empty()) throw InputError(folder, "the true edges of " + view.name + " (.json)", "none");
-  Eigen::Matrix2Xd points(2, map.edgels.size());
-  for (size_t i = 0; i < map.edgels.size(); ++i) points.col(i) << map.edgels[i].x, map.edgels[i].y;
+  const EdgelMap seen = distort_edgels(map, view);
+  Eigen::Matrix2Xd points(2, seen.edgels.size());
+  for (size_t i = 0; i < seen.edgels.size(); ++i)
+    points.col(i) << seen.edgels[i].x, seen.edgels[i].y;
   return score_edge_points(points, read_edge_polylines(path), kTolerance);
 }
 
@@ -171,7 +175,8 @@ void tell(const std::vector<Detection>& found, const std::vector<ViewScore>& sco
 }
 
 void run_detect(const DetectArguments& arguments, bool json, Progress* progress) {
-  const Scene scene = open_scene(arguments.scene, arguments.format);
+  Scene scene = open_scene(arguments.scene, arguments.format);
+  if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
   prepare_output_folder(map_folder(arguments));
   const std::unique_ptr<Detector> detector = make_detector(arguments.detection);
@@ -198,6 +203,7 @@ Verb detect_verb() {
   out.short_name = "o";
   f.choose("format", &arguments->format, scene_formats(),
            "What the folder is; if left out, its files decide");
+  f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
   list_fields(&arguments->detection, &f);
   f.group("Maps");
   f.add("ridge", &arguments->ridge_px, "px", 0.3, 10, "Width (one sigma) in which edges are drawn");

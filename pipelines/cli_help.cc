@@ -96,7 +96,9 @@ std::string usage_line(const Verb& verb) {
   std::string line = "sketchsplat " + verb.name;
   for (const Field& field : verb.fields) {
     if (!field.positional && !field.required) continue;
-    const std::string text = flag_text(field) + (field.several ? "…" : "");
+    std::string text = flag_text(field) + (field.several ? "…" : "");
+    if (const Field* other = find_field(verb.fields, field.unless))
+      text = "(" + text + " | " + flag_text(*other) + ")";
     line += field.required ? " " + text : " [" + text + "]";
   }
   return line + " [options]";

@@ -8,9 +8,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "datasets/errors.h"
+#include "datasets/frame.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/estimate.h"
+#include "pipelines/find_cameras.h"
 #include "pipelines/outputs.h"
 #include "pipelines/print_json.h"
 #include "pipelines/reconstruct.h"
@@ -22,6 +25,8 @@ struct ReconstructArguments {
   std::string scene, out;
   std::string format;  // empty: found out
   bool dry_run = false;
+  std::string images;  // photographs without cameras, instead of a scene
+  std::string masks;
   ReconstructOptions method;
   OutputOptions output;
 };
@@ -35,10 +40,32 @@ int missing_maps(const Scene& scene, const std::string& detector) {
   }));
 }
 
+// Photographs of which only the size is known, as a scene without cameras.
+Scene photographs_in(const std::string& folder) {
+  Scene scene;
+  scene.folder = folder;
+  scene.format = "photographs without cameras";
+  for (const std::string& name : list_images(folder, true)) {
+    View view;
+    view.image_path = folder + "/" + name;
+    try {
+      const ImageSize size = read_image_size(view.image_path);
+      view.camera.width = size.width;
+      view.camera.height = size.height;
+      scene.views.push_back(view);
+    } catch (const InputError& e) {
+      scene.warnings.push_back(e.what());
+    }
+  }
+  if (scene.views.empty()) throw InputError(folder, "photographs", "none");
+  return scene;
+}
+
 // What would be read, how long it takes, and how much memory.
 void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool json) {
   double pixels = 0;
   for (const View& view : scene.views) pixels += double(view.camera.width) * view.camera.height;
+  const bool photographs = !arguments.images.empty();
   const int views = int(scene.views.size()), threads = omp_get_max_threads();
   const Load load = expected_load(views, pixels, arguments.method, threads);
   const int missing = missing_maps(scene, arguments.method.detector);
@@ -59,7 +86,8 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
   if (!scene.warnings.empty()) std::cout << ", " << scene.warnings.size() << " frames left out";
   if (missing > 0) std::cout << ", " << missing << " edge maps missing";
   std::cout << "\nroughly " << rough_duration(load.seconds) << " with " << threads
-            << (threads == 1 ? " thread" : " threads") << ", " << std::lround(load.memory_mb)
+            << (threads == 1 ? " thread" : " threads")
+            << (photographs ? " after COLMAP, which takes far longer, " : ", ") << std::lround(load.memory_mb)
             << " MB, into " << arguments.out << "\n";
 }
 
@@ -76,17 +104,43 @@ void tell_result(const Sketch& sketch, const ReconstructArguments& arguments, bo
             << arguments.out << "/report.html: to look at\n";
 }
 
+// The scene, or the photographs with the cameras that COLMAP finds.
+Scene open_views(const ReconstructArguments& arguments, const CommonOptions& common,
+                 RunReport* report, Progress* progress) {
+  Scene scene;
+  if (arguments.images.empty()) {
+    scene = open_scene(arguments.scene, arguments.format);
+  } else {
+    prepare_output_folder(arguments.out);
+    const std::string folder = arguments.out + "/colmap";
+    find_cameras(arguments.images, folder, common.threads, report, progress);
+    scene = open_scene(folder, "colmap");
+    scene.folder = arguments.images;  // that is how users and files call it
+  }
+  if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
+  for (const std::string& warning : scene.warnings) progress->warn(warning);
+  return scene;
+}
+
 void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common,
                      Progress* progress) {
   arguments.method.seed = common.seed;
-  const Scene scene = open_scene(arguments.scene, arguments.format);
-  for (const std::string& warning : scene.warnings) progress->warn(warning);
+  if (!arguments.scene.empty() && !arguments.images.empty())
+    throw UsageError("reconstruct takes SCENE or --images DIR, not both");
   if (arguments.dry_run) {
-    tell_plan(scene, arguments, common.json);
+    tell_plan(arguments.images.empty() ? open_views(arguments, common, nullptr, progress)
+                                       : photographs_in(arguments.images),
+              arguments, common.json);
     return;
   }
+  RunReport before;
+  const Scene scene = open_views(arguments, common, &before, progress);
   prepare_output_folder(arguments.out);
-  const Reconstruction result = reconstruct(scene, arguments.method, progress);
+  Reconstruction result = reconstruct(scene, arguments.method, progress);
+  RunReport& report = result.report;
+  report.started = before.started;
+  report.stages.insert(report.stages.begin(), before.stages.begin(), before.stages.end());
+  report.warnings.insert(report.warnings.begin(), before.warnings.begin(), before.warnings.end());
   write_outputs(arguments.out, result, scene, arguments.method, arguments.output, progress);
   tell_result(result.sketch, arguments, common.json);
 }
@@ -99,6 +153,7 @@ Verb reconstruct_verb() {
   f.group("Arguments");
   Field& scene = f.add("scene", &arguments->scene, "SCENE", "The folder with calibrated images");
   scene.required = scene.positional = true;
+  scene.unless = "images";
   Field& out = f.add("out", &arguments->out, "DIR", "The folder to write into, made if missing");
   out.required = true;
   out.short_name = "o";
@@ -106,6 +161,9 @@ Verb reconstruct_verb() {
            "What the folder is; if left out, its files decide");
   f.add("dry-run", &arguments->dry_run,
         "Say what would be read, how long it would take, and how much memory");
+  f.add("images", &arguments->images, "DIR",
+        "Photographs without cameras: COLMAP finds them first, into colmap/ of --out");
+  f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
   list_fields(&arguments->method, &f);
   list_fields(&arguments->output, &f);
   Verb verb;
@@ -113,7 +171,8 @@ Verb reconstruct_verb() {
   verb.summary = "Turn calibrated images of an object into its edges as curves";
   verb.examples = {"sketchsplat reconstruct scenes/part --out out/part",
                    "sketchsplat reconstruct scenes/part -o out/part --preset accurate --threads 4",
-                   "sketchsplat reconstruct scenes/part -o out/part --detector maps:DexiNed"};
+                   "sketchsplat reconstruct scenes/part -o out/part --detector maps:DexiNed",
+                   "sketchsplat reconstruct --images photos -o out/part --masks masks"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {
     run_reconstruct(*arguments, common, progress);

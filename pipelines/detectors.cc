@@ -2,6 +2,7 @@
 #include "pipelines/detectors.h"
 
 #include "datasets/errors.h"
+#include "edges/undistort.h"
 #include "pipelines/surfel_detector.h"
 
 namespace sketchsplat {
@@ -11,7 +12,8 @@ class ImageDetector : public Detector {
  public:
   explicit ImageDetector(const DetectOptions& options) : options_(options) {}
   EdgelMap detect(const Scene&, const View& view) const override {
-    return detect_edges(read_picture(view), options_);
+    return undistort_edgels(detect_edges(read_picture(view), options_), view, options_.min_chain,
+                            options_.reach_px);
   }
 
  private:
@@ -30,7 +32,8 @@ class MapDetector : public Detector {
     if (map.width != view.camera.width || map.height != view.camera.height)
       throw InputError(path, "a map of the image's size",
                        std::to_string(map.width) + " x " + std::to_string(map.height) + " px");
-    return detect_ridges(map, options_);
+    return undistort_edgels(detect_ridges(map, options_), view, options_.min_chain,
+                            options_.reach_px);
   }
 
  private:
@@ -43,14 +46,24 @@ class GeometryDetector : public Detector {
   GeometryDetector(const std::string& normals, const GeometryOptions& options)
       : normals_(normals), options_(options) {}
   EdgelMap detect(const Scene& scene, const View& view) const override {
-    return geometry_edges(read_geometry_maps(scene, view, normals_), view.camera, options_);
+    return geometry_edges(read_maps(scene, view), view.camera, options_);
   }
   bool geometry(const Scene& scene, const View& view, GeometryMaps* maps) const override {
-    *maps = read_geometry_maps(scene, view, normals_);
+    *maps = read_maps(scene, view);
     return true;
   }
 
  private:
+  // Depth cannot be resampled: it has jumps.
+  GeometryMaps read_maps(const Scene& scene, const View& view) const {
+    if (!view.lens.is_identity())
+      throw InputError(view.image_path,
+                       "a picture without lens distortion for depth and normal maps (as colmap "
+                       "image_undistorter makes them)",
+                       "one with");
+    return read_geometry_maps(scene, view, normals_);
+  }
+
   std::string normals_;
   GeometryOptions options_;
 };

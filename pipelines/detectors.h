@@ -36,7 +36,7 @@ class Detector {
   /// Looks at the whole scene before the first view is asked for: where a detector that learns from
   /// all views does so. Called once. Throws InputError.
   virtual void prepare(const Scene&, RunReport*, Progress*) {}
-  /// Edgels of one view. From many threads. Throws InputError, also if an image or map has another
+  /// Edgels of one view, in its ideal pixels. From many threads. Throws InputError, also if an image or map has another
   /// size than the view.
   virtual EdgelMap detect(const Scene& scene, const View& view) const = 0;
   /// Does it make the geometry itself, rather than read it?

@@ -35,6 +35,7 @@ struct Field {
   std::string initial;               ///< text of the value when it was listed: the default
   std::string short_name;            ///< "o": also -o; empty if there is none
   bool required = false;
+  std::string unless;  ///< a required option need not be given if this one is
   bool positional = false;
   bool several = false;  ///< a text that may be given many times, joined by '\n'
   bool value_optional = false;  ///< "--name" alone is a text "-"

@@ -49,10 +49,11 @@ std::vector<std::vector<cv::Point>> project_runs(const Eigen::Matrix3Xd& points,
   std::vector<std::vector<cv::Point>> runs(1);
   for (int i = 0; i < points.cols(); ++i) {
     double depth;
-    const Eigen::Vector2d pixel = pen.view->project(points.col(i), &depth);
+    Eigen::Vector2d pixel = pen.view->project(points.col(i), &depth);
+    const bool drawn = depth > 0 && pen.view->image_pixel(pixel, &pixel);
     // The centre of the top-left pixel is (0, 0) before and after scaling.
     const Eigen::Vector2d at = ((pixel.array() + 0.5) * pen.scale - 0.5).matrix();
-    if (depth > 0 && at.allFinite() && at.cwiseAbs().maxCoeff() < kFarOutside) {
+    if (drawn && at.allFinite() && at.cwiseAbs().maxCoeff() < kFarOutside) {
       const Eigen::Vector2d fixed = at * (1 << kSubPixelBits);
       runs.back().emplace_back(int(std::lround(fixed.x())), int(std::lround(fixed.y())));
     } else if (!runs.back().empty()) {

@@ -10,6 +10,7 @@
 #include "edges/edge_tracks.h"
 #include "edges/lift.h"
 #include "edges/training_view.h"
+#include "edges/undistort.h"
 
 namespace sketchsplat {
 namespace {
@@ -48,7 +49,7 @@ class SurfelDetector : public Detector {
   EdgelMap detect(const Scene&, const View& view) const override {
     for (size_t i = 0; i < world_.views.size(); ++i)
       if (world_.views[i].image_path == view.image_path) {
-        if (options_.surfel_snap_px <= 0) return shape_[i];
+        if (options_.surfel_snap_px <= 0) return shape_in_image(i);
         return snap_edgels(shape_[i], world_.maps[i], kinds_[i], field_.evenness > kEven,
                            options_.surfel_snap_px);
       }
@@ -69,6 +70,13 @@ class SurfelDetector : public Detector {
   std::string surfels() const override { return surfel_ply(field_); }
 
  private:
+  // Edges that the surfels show; what is rendered has no distortion, masks of views have.
+  EdgelMap shape_in_image(size_t i) const {
+    EdgelMap out = shape_[i];
+    if (!world_.views[i].lens.is_identity()) out.mask = world_.maps[i].mask;
+    return out;
+  }
+
   void fit_surfels(const Scene& scene, RunReport* report, Progress* progress) {
     Stage stage("surfels", options_.surfels.renderings, report, progress);
     const std::vector<TrainingView> views = look(scene);
@@ -176,8 +184,12 @@ class SurfelDetector : public Detector {
     for (int i = 0; i < n; ++i) {
       try {
         Picture picture = read_masked(scene.views[i]);
-        maps[i] = detect_edges(picture, options_.detect);
-        views[i] = make_training_view(scene.views[i], picture, options_.surfels.side_px);
+        View view = scene.views[i];
+        maps[i] = undistort_edgels(detect_edges(picture, options_.detect), view,
+                                   options_.detect.min_chain, options_.detect.reach_px);
+        picture = undistort_picture(std::move(picture), view);  // surfels are seen by pinholes
+        view.lens = Lens();
+        views[i] = make_training_view(view, picture, options_.surfels.side_px);
         alpha[i] = std::move(picture.alpha);
       } catch (const InputError& e) {
         complaints[i] = e.what();

@@ -24,8 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kDeepest = 4;             // folders below a scene that belong to it
-constexpr std::uintmax_t kPoses = 1e6;  // [bytes] larger files are told by their size
+constexpr std::uintmax_t kLargest = 1e8;  // [bytes] of a file with cameras; else by its size
 constexpr double kProbeMegabytes = 4e3;
+
+bool may_hold_cameras(const fs::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".json" || ending == ".txt" || ending == ".bin";
+}
 
 // What one scene is, as it goes through the pipe.
 struct Message {
@@ -91,7 +96,7 @@ std::string input_hash(const std::string& folder) {
     const std::uintmax_t size = entry->file_size(none);
     std::string line =
         entry->path().lexically_relative(folder).string() + " " + std::to_string(size);
-    if (entry.depth() == 0 && size <= kPoses) line += " " + hash_of_file(entry->path());
+    if (may_hold_cameras(entry->path()) && size <= kLargest) line += " " + hash_of_file(entry->path());
     lines.push_back(line + "\n");
   }
   std::sort(lines.begin(), lines.end());

@@ -9,9 +9,9 @@
 
 namespace sketchsplat {
 
-/// Hash of what a scene folder holds: the contents of the files in it of at most a megabyte
-/// (poses), names and sizes of all others, down to four folders below. Does not look into images.
-/// The same for a copy of the folder; an empty text if there is no such folder.
+/// Hash of what a scene folder holds, down to four folders below: the contents of files that may
+/// hold cameras (json, txt, bin; at most 100 MB), names and sizes of all others. Does not look into
+/// images. The same for a copy of the folder; an empty text if there is no such folder.
 std::string input_hash(const std::string& folder);
 
 /// Whether there is a truth for the scene, in it or above it; perhaps one that cannot be used.

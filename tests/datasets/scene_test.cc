@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "datasets/errors.h"
+#include "datasets/far_views.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {
@@ -218,6 +219,22 @@ TEST(OpenScene, ACameraThatIsTooFarAwayToSeeTheOthersIsLeftOutWhateverTheUnit) {
     EXPECT_EQ(views_kept(25, unit), 4u) << "the others around one pixel of its image";
     EXPECT_EQ(views_kept(1e60, unit), 4u);
   }
+}
+
+TEST(LeaveOutFarViews, PointsKeepTheViewsThatStay) {
+  Scene scene;
+  for (const double x : {-1.0, 1e9, 1.0, 0.5, 2.0}) {
+    View view;
+    view.name = std::to_string(x);
+    view.camera = {16, 12, 20, 20, 7.5, 5.5};
+    view.cam_from_world.translation.x() = -x;
+    scene.views.push_back(view);
+  }
+  scene.points = {{Eigen::Vector3d::Zero(), {0, 1, 4}}, {Eigen::Vector3d::Zero(), {1}}};
+  leave_out_far_views(&scene);
+  ASSERT_EQ(scene.views.size(), 4u);
+  EXPECT_THAT(scene.points[0].views, ElementsAre(0, 3));
+  EXPECT_THAT(scene.points[1].views, IsEmpty());
 }
 
 TEST(OpenScene, PosesThatAreAlmostRotationsAreMadeRotations) {

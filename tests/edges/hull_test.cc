@@ -59,6 +59,43 @@ TEST(VisualHull, TheWorldBringsItsOwn) {
   EXPECT_TRUE(w.hull.surely_visible({0.5, 0.5, 0.8}, {0.5, 0.5, 3.5}));
 }
 
+// The same mask in the picture that the lens draws.
+Image<uint8_t> bent_mask(const View& view, const Image<uint8_t>& straight) {
+  Image<uint8_t> out(straight.width, straight.height);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      Eigen::Vector2d ideal;
+      if (!view.ideal_pixel({double(x), double(y)}, &ideal)) continue;
+      const int u = int(std::lround(ideal.x())), v = int(std::lround(ideal.y()));
+      if (u >= 0 && v >= 0 && u < out.width && v < out.height) out.at(x, y) = straight.at(u, v);
+    }
+  return out;
+}
+
+TEST(VisualHull, MasksAreLookedUpThroughTheLens) {
+  const EdgeWorld straight = cube_world(true);
+  EdgeWorld bent = straight, forgotten = straight;
+  Lens::Terms terms;
+  terms.k1 = 8;
+  for (size_t i = 0; i < bent.views.size(); ++i) {
+    bent.views[i].lens = Lens(LensModel::kSimpleRadial, terms);
+    bent.maps[i].mask = bent_mask(bent.views[i], straight.maps[i].mask);
+    forgotten.maps[i].mask = bent.maps[i].mask;
+  }
+  const VisualHull truth(straight, 32), with(bent, 32), without(forgotten, 32);
+  int agree = 0, agree_without = 0, n = 0;
+  for (double x = 0.16; x < 0.85; x += 0.04)
+    for (double y = 0.16; y < 0.85; y += 0.04)
+      for (double z = 0.16; z < 0.85; z += 0.04, ++n) {
+        const Vector3d p(x, y, z), camera(0.9, 0.1, 3.5);
+        const bool seen = truth.surely_visible(p, camera);
+        agree += with.surely_visible(p, camera) == seen;
+        agree_without += without.surely_visible(p, camera) == seen;
+      }
+  EXPECT_GT(agree, 0.96 * n);
+  EXPECT_LT(agree_without, 0.9 * n) << agree;
+}
+
 TEST(VisualHull, WithoutMasksNothingIsSure) {
   EXPECT_TRUE(cube_world(false).hull.empty());
   EXPECT_FALSE(cube_world(false).hull.surely_visible({0.5, 0.5, 0.8}, {0.5, 0.5, 3.5}));

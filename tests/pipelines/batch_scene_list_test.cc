@@ -135,6 +135,11 @@ TEST(InputHash, ChangesWithPosesNamesAndSizesButNotWithTheFolder) {
   folder.write("b/meta_data.json", "{2}");
   EXPECT_NE(input_hash(folder.path() + "/b"), first) << "same sizes";
   make("b");
+  folder.write("b/sparse/0/images.bin", "1");
+  const std::string colmap = input_hash(folder.path() + "/b");
+  folder.write("b/sparse/0/images.bin", "2");
+  EXPECT_NE(input_hash(folder.path() + "/b"), colmap) << "cameras of COLMAP";
+  fs::remove_all(folder.path() + "/b/sparse");
   folder.write("b/color/1.png", "");
   EXPECT_NE(input_hash(folder.path() + "/b"), first);
   fs::remove(folder.path() + "/b/color/1.png");

@@ -103,6 +103,8 @@ TEST_F(Habits, DryRunSaysWhatWouldBeReadAndWritesNothing) {
   EXPECT_EQ(plan["missing_maps"], 12);
   EXPECT_GT(plan["expected_mb"], 1);
   EXPECT_FALSE(fs::exists(folder_ / "nothing"));
+  EXPECT_THAT(run("reconstruct --dry-run --out x --images " + scene() + "/color").out,
+              AllOf(HasSubstr("without cameras, 12 views"), HasSubstr("after COLMAP")));
   EXPECT_EQ(run("reconstruct " + in_folder("gone") + " --out x --dry-run").status, kBadInput);
 }
 

@@ -167,6 +167,29 @@ TEST(Overlay, PictureIsPaledAndItsAlphaBecomesWhite) {
   EXPECT_NEAR(overlay.red.at(5, 5), 1, 0.01);
 }
 
+TEST(Overlay, CurvesAreDrawnWhereTheLensShowsThem) {
+  View view = view_from(2);
+  Lens::Terms terms;
+  terms.k1 = 0.8, terms.p1 = 0.4;  // 12.5 pixels down at the ends, none in the middle
+  view.lens = Lens(LensModel::kOpencv, terms);
+  Sketch sketch;
+  const int a = sketch.add_node({-1, 0, 0}), b = sketch.add_node({1, 0, 0});
+  sketch.add_stroke(StrokeKind::kLine, a, b, {});
+  const Picture overlay = draw_overlay(sketch, view, {});
+  const auto is_blue = [&](double x, double y) {
+    const int u = int(std::lround(x)), v = int(std::lround(y));
+    return overlay.blue.at(u, v) > overlay.red.at(u, v) + 0.3f;
+  };
+  for (double x = -0.9; x < 0.95; x += 0.1) {
+    double depth;
+    Eigen::Vector2d ideal = view.project({x, 0, 0}, &depth), image;
+    ASSERT_TRUE(view.image_pixel(ideal, &image));
+    EXPECT_TRUE(is_blue(image.x(), image.y())) << x;
+    if (std::abs(x) < 0.6) continue;
+    EXPECT_FALSE(is_blue(ideal.x(), ideal.y())) << x;
+  }
+}
+
 TEST(Overlay, LargePicturesAreReduced) {
   const Picture overlay = draw_overlay(line_and_circle(), view_from(2), {}, 50);
   EXPECT_EQ(overlay.width(), 50);

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "datasets/errors.h"
+#include "datasets/scene.h"
+#include "tests/datasets/temp_folder.h"
+#include "tests/support/colmap_files.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+void write_image(const TempFolder& folder, const std::string& name, int width = 16) {
+  write_png(folder.file(name), Image<float>(width, 12, 0.2f));
+}
+
+// Turned by 90 degrees about x: world y is the camera's z. The camera's centre is (1, -5, 2).
+ColmapFiles small_model() {
+  ColmapFiles m;
+  m.cameras = {{7, "OPENCV", 4, 16, 12, {20, 21, 8.25, 6.5, -0.1, 0.02, 0.001, -0.002}},
+               {3, "SIMPLE_PINHOLE", 0, 16, 12, {25, 8, 6}}};
+  const double half = std::sqrt(0.5);
+  m.images = {{12, {half, half, 0, 0}, {-1, 2, 5}, 7, "sub/two words.png", {{3, 4}, {5, 6}}},
+              {4, {2, 0, 0, 0}, {0, 0, 3}, 3, "b.png", {}},
+              {5, {1, 0, 0, 0}, {0, 0, 4}, 3, "c.png", {{1, 1}}}};
+  m.points = {{1, {1, 2, 3}, {12, 4, 12}}, {9, {0.5, 0, 0}, {5}}};
+  return m;
+}
+
+void write_images(const TempFolder& folder) {
+  for (const char* name : {"sub/two words.png", "b.png", "c.png"})
+    write_image(folder, std::string("images/") + name);
+}
+
+void expect_small_model(const Scene& scene) {
+  EXPECT_EQ(scene.format, "colmap");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_EQ(scene.views.size(), 3u);
+  EXPECT_EQ(scene.views[0].name, "b.png") << "in the order of ids";
+  EXPECT_EQ(scene.views[1].name, "c.png");
+  const View& v = scene.views[2];
+  EXPECT_EQ(v.name, "two words.png");
+  EXPECT_EQ(v.camera.fx, 20);
+  EXPECT_EQ(v.camera.fy, 21);
+  EXPECT_EQ(v.camera.cx, 7.75) << "the top-left pixel's centre is (0, 0) here";
+  EXPECT_EQ(v.camera.cy, 6);
+  EXPECT_EQ(v.lens.model(), LensModel::kOpencv);
+  EXPECT_EQ(v.lens.terms().k1, -0.1);
+  EXPECT_EQ(v.lens.terms().k2, 0.02);
+  EXPECT_EQ(v.lens.terms().p1, 0.001);
+  EXPECT_EQ(v.lens.terms().p2, -0.002);
+  EXPECT_LT((v.center_in_world() - Eigen::Vector3d(1, -5, 2)).norm(), 1e-12);
+  double depth;
+  v.project({1, 0, 2}, &depth);
+  EXPECT_NEAR(depth, 5, 1e-12);
+  EXPECT_TRUE(scene.views[0].lens.is_identity());
+  EXPECT_EQ(scene.views[0].camera.fy, 25);
+  EXPECT_EQ(scene.views[0].cam_from_world.rotation, Eigen::Matrix3d(Eigen::Matrix3d::Identity()))
+      << "a quaternion of any length";
+  ASSERT_EQ(scene.points.size(), 2u);
+  EXPECT_EQ(scene.points[0].position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_THAT(scene.points[0].views, ElementsAre(0, 2));
+  EXPECT_THAT(scene.points[1].views, ElementsAre(1));
+}
+
+TEST(Colmap, TextAndBinaryModelsAreReadInAllTheirPlaces) {
+  for (const char* place : {"/sparse/0", "/sparse", ""})
+    for (const bool binary : {false, true}) {
+      const TempFolder folder;
+      write_images(folder);
+      (binary ? write_colmap_binary : write_colmap_text)(small_model(), folder.path() + place);
+      expect_small_model(open_scene(folder.path()));
+    }
+}
+
+TEST(Colmap, ImagesMayLieBesideTheModel) {
+  const TempFolder folder;
+  for (const char* name : {"sub/two words.png", "b.png", "c.png"}) write_image(folder, name);
+  write_colmap_text(small_model(), folder.path());
+  expect_small_model(open_scene(folder.path()));
+}
+
+TEST(Colmap, BinaryFilesComeBeforeTextFiles) {
+  const TempFolder folder;
+  write_images(folder);
+  write_colmap_binary(small_model(), folder.path() + "/sparse/0");
+  ColmapFiles other = small_model();
+  other.images.resize(1);
+  write_colmap_text(other, folder.path() + "/sparse/0");
+  expect_small_model(open_scene(folder.path()));
+}
+
+TEST(Colmap, RigsAndFramesOfNewerVersionsChangeNothing) {
+  const TempFolder folder;
+  write_images(folder);
+  write_colmap_binary(small_model(), folder.path() + "/sparse/0");
+  folder.write("sparse/0/rigs.bin", "whatever");
+  folder.write("sparse/0/frames.bin", "whatever");
+  expect_small_model(open_scene(folder.path()));
+}
+
+TEST(Colmap, WindowsLineEndsAreRead) {
+  const TempFolder folder;
+  write_images(folder);
+  write_colmap_text(small_model(), folder.path() + "/sparse");
+  for (const char* name : {"sparse/cameras.txt", "sparse/images.txt", "sparse/points3D.txt"}) {
+    std::string text = bytes_of(folder.file(name));
+    for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2)
+      text.insert(at, "\r");
+    folder.write(name, text);
+  }
+  expect_small_model(open_scene(folder.path()));
+}
+
+Lens lens_read(const std::string& model, int id, const std::vector<double>& parameters,
+               Camera* camera = nullptr) {
+  std::vector<Lens> lenses;
+  for (const bool binary : {false, true}) {
+    const TempFolder folder;
+    write_image(folder, "images/a.png");
+    ColmapFiles m;
+    m.cameras = {{1, model, id, 16, 12, parameters}};
+    m.images = {{1, {1, 0, 0, 0}, {0, 0, 1}, 1, "a.png"}};
+    (binary ? write_colmap_binary : write_colmap_text)(m, folder.path() + "/sparse/0");
+    const View view = open_scene(folder.path()).views.at(0);
+    lenses.push_back(view.lens);
+    if (camera) *camera = view.camera;
+  }
+  EXPECT_EQ(lenses[0].model(), lenses[1].model());
+  const Eigen::Vector2d p(0.21, -0.32);
+  EXPECT_EQ(lenses[0].distort(p), lenses[1].distort(p));
+  return lenses[1];
+}
+
+TEST(Colmap, ParametersOfEveryModelAreInItsOrder) {
+  Camera camera;
+  EXPECT_TRUE(lens_read("PINHOLE", 1, {30, 31, 8, 7}, &camera).is_identity());
+  EXPECT_EQ(camera.fx, 30);
+  EXPECT_EQ(camera.fy, 31);
+  EXPECT_EQ(camera.cy, 6.5);
+  EXPECT_EQ(lens_read("SIMPLE_RADIAL", 2, {30, 8, 7, 0.1}, &camera).terms().k1, 0.1);
+  EXPECT_EQ(camera.fy, 30);
+  EXPECT_EQ(camera.cx, 7.5);
+  const Lens radial = lens_read("RADIAL", 3, {30, 8, 7, 0.1, 0.2});
+  EXPECT_EQ(radial.terms().k1, 0.1);
+  EXPECT_EQ(radial.terms().k2, 0.2);
+  const Lens::Terms full =
+      lens_read("FULL_OPENCV", 6, {30, 31, 8, 7, .1, .2, .3, .4, .5, .6, .7, .8}).terms();
+  EXPECT_EQ(full.k1, .1);
+  EXPECT_EQ(full.k2, .2);
+  EXPECT_EQ(full.p1, .3);
+  EXPECT_EQ(full.p2, .4);
+  EXPECT_EQ(full.k3, .5);
+  EXPECT_EQ(full.k4, .6);
+  EXPECT_EQ(full.k5, .7);
+  EXPECT_EQ(full.k6, .8);
+  const Lens fisheye = lens_read("OPENCV_FISHEYE", 5, {30, 31, 8, 7, .01, .02, .03, .04});
+  EXPECT_EQ(fisheye.model(), LensModel::kOpencvFisheye);
+  EXPECT_EQ(fisheye.terms().k3, .03);
+  EXPECT_EQ(fisheye.terms().k4, .04);
+  EXPECT_EQ(fisheye.terms().p1, 0);
+}
+
+TEST(Colmap, OfSeveralModelsTheOneWithMostImagesIsTakenAndSaidSo) {
+  for (const bool binary : {false, true}) {
+    const TempFolder folder;
+    write_images(folder);
+    const auto write = binary ? write_colmap_binary : write_colmap_text;
+    ColmapFiles less = small_model();
+    less.images.resize(1);
+    write(less, folder.path() + "/sparse/0");
+    write(less, folder.path() + "/sparse/2");
+    write(small_model(), folder.path() + "/sparse/10");
+    const Scene scene = open_scene(folder.path());
+    EXPECT_EQ(scene.views.size(), 3u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_THAT(scene.warnings[0],
+                AllOf(HasSubstr("3 models"), HasSubstr("sparse/10 is used"), HasSubstr("(3)")));
+  }
+}
+
+TEST(Colmap, PosesWithoutImageAndImagesWithoutPoseAreCountedAndNamed) {
+  const TempFolder folder;
+  write_image(folder, "images/b.png");
+  for (const char* name : {"w", "x", "y", "z"})
+    write_image(folder, std::string("images/more/") + name + ".JPG");
+  folder.write("images/notes.txt", "no image");
+  write_colmap_text(small_model(), folder.path() + "/sparse/0");
+  const Scene scene = open_scene(folder.path());
+  EXPECT_EQ(scene.views.size(), 1u);
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("poses without an image: 2 (c.png, sub/two words.png)",
+                          "images without a pose: 4 (more/w.JPG, more/x.JPG, more/y.JPG, ...)"));
+  ASSERT_EQ(scene.points.size(), 1u) << "points that nobody sees are of no use";
+  EXPECT_THAT(scene.points[0].views, ElementsAre(0));
+}
+
+TEST(Colmap, PointsMayBeMissingEmptyOrNotFinite) {
+  const TempFolder folder;
+  write_images(folder);
+  ColmapFiles m = small_model();
+  m.points[0].position[1] = NAN;
+  write_colmap_text(m, folder.path() + "/sparse/0");
+  EXPECT_EQ(open_scene(folder.path()).points.size(), 1u);
+  m.points.clear();
+  write_colmap_text(m, folder.path() + "/sparse/0");
+  EXPECT_EQ(open_scene(folder.path()).points.size(), 0u);
+  std::filesystem::remove(folder.file("sparse/0/points3D.txt"));
+  EXPECT_EQ(open_scene(folder.path()).views.size(), 3u);
+}
+
+TEST(Colmap, FramesThatCannotBeUsedAreNamed) {
+  for (const bool binary : {false, true}) {
+    const TempFolder folder;
+    write_images(folder);
+    ColmapFiles m = small_model();
+    m.images[0].q = {0, 0, 0, 0};
+    m.images[1].t[2] = NAN;
+    (binary ? write_colmap_binary : write_colmap_text)(m, folder.path() + "/sparse/0");
+    const Scene scene = open_scene(folder.path());
+    EXPECT_EQ(scene.views.size(), 1u);
+    EXPECT_THAT(scene.warnings,
+                ElementsAre("frame b.png is left out: its pose is not finite",
+                            "frame sub/two words.png is left out: its pose is no rotation"));
+  }
+}
+
+TEST(Colmap, ALensThatIsNotFiniteIsNoLens) {
+  const TempFolder folder;
+  write_images(folder);
+  ColmapFiles m = small_model();
+  m.cameras[0].parameters[5] = INFINITY;
+  write_colmap_binary(m, folder.path() + "/sparse/0");
+  EXPECT_THAT(open_scene(folder.path()).warnings,
+              ElementsAre("frame sub/two words.png is left out: its distortion is not finite"));
+}
+
+// What is said of a scene, from the name of the file in its model on.
+std::string complaint(const TempFolder& folder) {
+  try {
+    open_scene(folder.path());
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos);
+    const size_t at = what.find("/sparse/0/");
+    return at == std::string::npos ? what : what.substr(at + 10);
+  }
+  return "";
+}
+
+// The same of the small model, of which one file is another.
+std::string complaint(const std::string& file, const std::string& bytes) {
+  const TempFolder folder;
+  write_images(folder);
+  const bool binary = file.find(".bin") != std::string::npos;
+  (binary ? write_colmap_binary : write_colmap_text)(small_model(), folder.path() + "/sparse/0");
+  folder.write("sparse/0/" + file, bytes);
+  return complaint(folder);
+}
+
+TEST(Colmap, BinaryFilesAreRefusedWhereverTheyAreCut) {
+  const ColmapFiles m = small_model();
+  const TempFolder folder;
+  write_images(folder);
+  write_colmap_binary(m, folder.path() + "/sparse/0");
+  for (const auto& [file, bytes] : {std::pair{"sparse/0/cameras.bin", cameras_binary(m)},
+                                    {"sparse/0/images.bin", images_binary(m)},
+                                    {"sparse/0/points3D.bin", points_binary(m)}}) {
+    for (size_t size = 0; size < bytes.size(); ++size) {
+      folder.write(file, bytes.substr(0, size));
+      EXPECT_THAT(complaint(folder), HasSubstr(".bin: expected whole ")) << file << size;
+    }
+    folder.write(file, bytes);
+  }
+}
+
+TEST(Colmap, CountsThatTheFileCannotHoldAreRefusedBeforeMemoryIsTaken) {
+  const ColmapFiles m = small_model();
+  const std::string many("\xff\xff\xff\xff\xff\xff\xff\x0f", 8);
+  for (const auto& [file, bytes] : {std::pair{"cameras.bin", cameras_binary(m)},
+                                    {"images.bin", images_binary(m)},
+                                    {"points3D.bin", points_binary(m)}})
+    EXPECT_THAT(complaint(file, std::string(bytes).replace(0, 8, many)),
+                HasSubstr("found a count of 1152921504606846975"));
+  // The points of the first image, the track of the first point.
+  std::string images = images_binary(m), points = points_binary(m);
+  images.replace(images.find("words.png") + 10, 8, many);
+  EXPECT_THAT(complaint("images.bin", images), HasSubstr("found a count of"));
+  points.replace(8 + 8 + 24 + 3 + 8, 8, many);
+  EXPECT_THAT(complaint("points3D.bin", points), HasSubstr("found a count of"));
+}
+
+TEST(Colmap, TextThatIsNoneIsNamedByItsLine) {
+  EXPECT_EQ(complaint("cameras.txt", "1 PINHOLE 16 12 20 x 8 6\n"),
+            "cameras.txt: expected a number in line 1, found \"x\"");
+  EXPECT_EQ(complaint("cameras.txt", "# c\n1 PINHOLE 16 12 20 20 8\n"),
+            "cameras.txt: expected a number in line 2, found its end");
+  EXPECT_EQ(complaint("cameras.txt", "1 PINHOLE 0 12 20 20 8 8\n"),
+            "cameras.txt: expected a size of pictures in line 1, found \"0.000000\"");
+  EXPECT_EQ(complaint("images.txt", "1 1 0 0 0 0 0 1 7\n\n"),
+            "images.txt: expected the name of an image in line 1, found its end");
+  EXPECT_EQ(complaint("images.txt", "1 1 0 0 0 0 0 1 -7 a\n\n"),
+            "images.txt: expected a whole number in line 1, found \"-7.000000\"");
+  EXPECT_EQ(complaint("points3D.txt", "1 0 0 0 9 9 9 0.1 4 0 5\n"),
+            "points3D.txt: expected a number in line 1, found its end");
+}
+
+TEST(Colmap, CamerasThatAreMissingAreNamed) {
+  EXPECT_EQ(complaint("cameras.txt", "3 SIMPLE_PINHOLE 16 12 25 8 6\n"),
+            "images.txt: expected a camera of sub/two words.png in the file of cameras, found no "
+            "camera 7");
+}
+
+TEST(Colmap, OtherCameraModelsAreRefusedWithAWayOut) {
+  ColmapFiles m = small_model();
+  m.cameras[0] = {7, "FOV", 7, 16, 12, {20, 20, 8, 6, 0.9}};
+  for (const auto& [file, bytes] :
+       {std::pair{"cameras.txt", cameras_text(m)}, {"cameras.bin", cameras_binary(m)}})
+    EXPECT_THAT(complaint(file, bytes),
+                AllOf(HasSubstr("camera model of sub/two words.png"),
+                      HasSubstr("colmap image_undistorter"), HasSubstr("found FOV")));
+  m.cameras[0].model = "NEW_ONE", m.cameras[0].model_id = 42;
+  EXPECT_THAT(complaint("cameras.txt", cameras_text(m)), HasSubstr("found NEW_ONE"));
+  EXPECT_THAT(complaint("cameras.bin", cameras_binary(m)),
+              AllOf(HasSubstr("colmap image_undistorter"), HasSubstr("found number 42")));
+  m.images.erase(m.images.begin());
+  const TempFolder folder;
+  write_images(folder);
+  write_colmap_text(m, folder.path() + "/sparse/0");
+  EXPECT_EQ(open_scene(folder.path()).views.size(), 2u) << "nobody uses that camera";
+}
+
+TEST(Colmap, AFolderWithoutAModelSaysWhereItShouldBe) {
+  const TempFolder folder;
+  write_images(folder);
+  folder.write("sparse/0/cameras.bin", "");
+  try {
+    open_scene(folder.path());
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("expected a model of COLMAP"));
+  }
+}
+
+TEST(Colmap, MasksAreFoundByTheImagesNames) {
+  const TempFolder folder;
+  write_images(folder);
+  write_image(folder, "masks/sub/two words.png");
+  write_image(folder, "masks/b.png.png");
+  write_colmap_text(small_model(), folder.path() + "/sparse/0");
+  const Scene scene = open_scene(folder.path());
+  EXPECT_THAT(scene.warnings, IsEmpty()) << "masks are no images without a pose";
+  EXPECT_EQ(scene.views[0].mask_path, folder.path() + "/masks/b.png.png");
+  EXPECT_EQ(scene.views[1].mask_path, "");
+  EXPECT_EQ(scene.views[2].mask_path, folder.path() + "/masks/sub/two words.png");
+}
+
+}  // namespace
+}  // namespace sketchsplat
