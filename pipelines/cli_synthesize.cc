@@ -3,6 +3,7 @@
 
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "datasets/errors.h"
@@ -12,6 +13,7 @@
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/plugin_path.h"
+#include "pipelines/print_json.h"
 #include "pipelines/run_report.h"
 
 namespace sketchsplat {
@@ -57,10 +59,24 @@ PartValues part_values(const std::string& part, const std::string& lines) {
   return values;
 }
 
+nlohmann::ordered_json json_of_parts() {
+  nlohmann::ordered_json parts = nlohmann::ordered_json::object();
+  for (const PartSpec& spec : part_specs()) {
+    parts[spec.name] = nlohmann::ordered_json::object();
+    for (const PartParameter& p : spec.parameters)
+      parts[spec.name][p.name] = {
+          {"unit", p.unit}, {"drawn", {p.low, p.high}}, {"allowed", {p.least, p.most}}};
+  }
+  return parts;
+}
+
 void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
                     Progress* progress) {
   if (arguments.list_parts) {
-    std::cout << part_listing(part_specs());
+    if (common.json)
+      print_json(json_of_parts());
+    else
+      std::cout << part_listing(part_specs());
     return;
   }
   SynthesizeOptions& options = arguments.options;
@@ -86,8 +102,13 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
     plugin.write_scene(scene, arguments.out);
     stage.result(std::to_string(scene.views.size()) + " views");
   }
-  std::cout << arguments.out << ": " << scene.views.size() << " views, "
-            << scene.truth.curves.size() << " true edges\n";
+  if (common.json)
+    print_json({{"scene", arguments.out},
+                {"views", scene.views.size()},
+                {"true_edges", scene.truth.curves.size()}});
+  else
+    std::cout << arguments.out << ": " << scene.views.size() << " views, "
+              << scene.truth.curves.size() << " true edges\n";
 }
 
 void list_camera_fields(SynthesizeOptions* o, Fields* f) {

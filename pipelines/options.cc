@@ -201,6 +201,8 @@ void list_fields(CommonOptions* o, Fields* f) {
   f->add("seed", &o->seed, "", 0, HUGE_VAL, "Seed of everything that is drawn at random");
   f->add("quiet", &o->quiet, "Say nothing but errors").short_name = "q";
   f->add("verbose", &o->verbose, "Say more while working").short_name = "v";
+  f->add("json", &o->json, "Write results to standard output as JSON");
+  f->add("log", &o->log, "FILE", "Add everything that is said to this file, with the time");
 }
 
 void list_fields(ReconstructOptions* o, Fields* f) {
@@ -255,6 +257,8 @@ void list_fields(OutputOptions* o, Fields* f) {
   f->add("overlays", &o->overlays, "views", 0, 100, "Views over which the curves are drawn");
   f->add("point-spacing", &o->point_spacing, "of the extent", 1e-5, 1,
          "Distance of the samples in edge_points.ply");
+  f->add("reproducible", &o->reproducible,
+         "Leave times, memory and threads out of the reports: same input, same bytes");
   list_fields(&o->cad, f);
 }
 

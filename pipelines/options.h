@@ -31,6 +31,8 @@ struct CommonOptions {
   int seed = 0;
   bool quiet = false;
   bool verbose = false;
+  bool json = false;  ///< results on standard output as JSON
+  std::string log;    ///< file for everything that is said, too; empty: none
 };
 
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
@@ -73,6 +75,7 @@ struct CadOptions {
 struct OutputOptions {
   int overlays = 4;              ///< views that are drawn over
   double point_spacing = 0.005;  ///< fraction of the sketch's largest extent
+  bool reproducible = false;     ///< no times, memory and threads in the reports
   CadOptions cad;                ///< of sketch.step
 };
 

@@ -13,9 +13,10 @@ struct ReportInput {
   const Reconstruction* reconstruction;
   const Scene* scene;
   std::string options_json;  ///< object of option -> value (fields_json)
+  bool reproducible = false;  ///< without seconds, memory and threads
 };
 
-/// report.json: seconds per stage, peak memory, counts, rounds, warnings, options, version,
+/// report.json: seconds per stage, peak memory, counts, rounds, warnings, options, version, commit,
 /// threads.
 std::string report_json(const ReportInput& input);
 
@@ -27,6 +28,9 @@ struct ReportImage {
 /// report.html: one page that needs nothing but itself. `report` is the text of report.json.
 std::string report_html(const std::string& report, const Sketch& sketch,
                         const std::vector<ReportImage>& overlays);
+
+/// JSON that no text in it can end, where it stands in a script element.
+std::string without_tags(const std::string& json);
 
 /// Box around the curves, from samples of them; zero-sized at the origin if there are none.
 struct Extent {

@@ -8,6 +8,7 @@
 #include "sketches/conic.h"
 #include "sketches/curve_chain.h"
 #include "sketches/io.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace {
@@ -216,7 +217,7 @@ Sketch read_sketch_json(std::istream& in, const std::string& path) {
   const Reader reader(path);
   Json j;
   try {
-    j = Json::parse(in);
+    j = parse_json<Json>(in, path);
   } catch (const Json::exception& e) {
     reader.fail("a sketch as JSON", e.what());
   }

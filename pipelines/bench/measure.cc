@@ -14,9 +14,10 @@
 #include "datasets/scene.h"
 #include "datasets/synthetic/synthesize.h"
 #include "pipelines/atomic_file.h"
-#include "pipelines/bench/child.h"
 #include "pipelines/bench/machine.h"
+#include "pipelines/child.h"
 #include "pipelines/cli.h"
+#include "pipelines/hash.h"
 
 namespace sketchsplat {
 namespace {
@@ -79,16 +80,6 @@ double decode_seconds(const Scene& scene) {
     }
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-}
-
-std::string reason_of(const ChildResult& child, double timeout_seconds) {
-  if (child.timed_out) return "took longer than " + std::to_string(timeout_seconds) + " s";
-  std::string text = child.last_words;
-  if (text.rfind("sketchsplat: ", 0) == 0) text = text.substr(13);
-  if (child.status >= 128)
-    text =
-        "ended by signal " + std::to_string(child.status - 128) + (text.empty() ? "" : ": " + text);
-  return text.empty() ? "exit status " + std::to_string(child.status) : text;
 }
 
 // Failures that more runs would only repeat.

@@ -11,6 +11,7 @@
 namespace sketchsplat {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -26,7 +27,8 @@ std::vector<std::string> verbs_in(const std::string& help) {
 TEST_F(Program, TellsItsVersion) {
   const Outcome o = run("--version");
   EXPECT_EQ(o.status, 0);
-  EXPECT_EQ(o.out, "sketchsplat " SKETCHSPLAT_VERSION "\n");
+  EXPECT_THAT(o.out, StartsWith("sketchsplat " SKETCHSPLAT_VERSION "\ncommit "));
+  EXPECT_THAT(o.out, AllOf(HasSubstr("Ceres "), HasSubstr("OpenCV "), HasSubstr("g++ ")));
   EXPECT_EQ(o.err, "");
 }
 
@@ -70,7 +72,9 @@ TEST_F(Program, HelpListsEveryOptionWithItsDefault) {
                 testing::AnyOf(HasSubstr("--" + field.name), HasSubstr("--[no-]" + field.name)));
     EXPECT_THAT(help, HasSubstr(field.help)) << field.name;
     EXPECT_THAT(help, HasSubstr(facts(field))) << field.name;
-    EXPECT_THAT(facts(field), HasSubstr("default")) << field.name;
+    if (field.name != "log") {
+      EXPECT_THAT(facts(field), HasSubstr("default")) << field.name;
+    }
   }
 }
 
