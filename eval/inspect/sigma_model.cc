@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "eval/inspect/sigma_model.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "sketches/covariance.h"
+#include "sketches/curve.h"
+#include "sketches/curve_jacobian.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+
+// Symmetric square root's columns: a matrix L with L L^T = the covariance.
+MatrixXd root_of(const MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(covariance);
+  return es.eigenvectors() * es.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+Eigen::Matrix<double, 2, 3> frame_across(const Vector3d& tangent) {
+  Eigen::Matrix<double, 2, 3> f;
+  const Vector3d u = tangent.unitOrthogonal();
+  f.row(0) = u;
+  f.row(1) = tangent.cross(u);
+  return f;
+}
+
+double largest_deviation(const MatrixXd& modes) {
+  double largest = 0;
+  for (int j = 0; j + 1 < modes.rows(); j += 2) {
+    const Matrix2d c = modes.middleRows<2>(j) * modes.middleRows<2>(j).transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix2d> es(c, Eigen::EigenvaluesOnly);
+    largest = std::max(largest, es.eigenvalues()[1]);
+  }
+  return std::sqrt(std::max(0.0, largest));
+}
+
+// What a turn and a shift of the whole, of this covariance, do at a point: L with L L^T = it.
+Eigen::Matrix<double, 3, 6> pose_modes(const Alignment& alignment, const Vector3d& point) {
+  const Vector3d arm = point - alignment.centre;
+  Eigen::Matrix<double, 3, 6> j;
+  j << 0, arm.z(), -arm.y(), 1, 0, 0, -arm.z(), 0, arm.x(), 0, 1, 0, arm.y(), -arm.x(), 0, 0, 0, 1;
+  return j * root_of(alignment.covariance);
+}
+
+constexpr int kRigid = 3, kBend = 1, kScale = 1, kPose = 6;
+
+}  // namespace
+
+MatrixXd calibrated_covariance(const Sketch& measured, int stroke, const SigmaOptions& options) {
+  const Evidence& e = measured.evidence[stroke];
+  const StrokeKind kind = measured.strokes[stroke].kind;
+  const double factor = kind == StrokeKind::kLine ? options.straight : options.curved;
+  const int n = 3 * num_controls(kind);
+  if (!e.covariance.empty()) return factor * factor * from_upper_triangle(e.covariance);
+  return std::pow(factor * e.sigma, 2) * MatrixXd::Identity(n, n);
+}
+
+bool is_open(const Sketch& measured, int stroke) {
+  const Evidence& e = measured.evidence[stroke];
+  if (e.covariance.empty()) return false;
+  switch (measured.strokes[stroke].kind) {
+    case StrokeKind::kLine:
+      return e.determined < 4;
+    case StrokeKind::kArc:
+    case StrokeKind::kCircle:
+      return e.determined < 6;
+    case StrokeKind::kEllipse:
+      return e.determined < 8;
+    default:
+      return false;  // what nearly straight ones leave open does not move them
+  }
+}
+
+Vector3d curvature_at(const Sketch& sketch, int stroke, double t) {
+  constexpr double kStep = 1e-4;
+  const double a = std::max(0.0, t - kStep), b = std::min(1.0, t + kStep);
+  Vector3d p, q, d, before, after;
+  evaluate_stroke(sketch, stroke, a, &p, &before);
+  evaluate_stroke(sketch, stroke, b, &q, &after);
+  evaluate_stroke(sketch, stroke, t, &p, &d);
+  const double length = d.norm() * (b - a);
+  if (!(length > 0)) return Vector3d::Zero();
+  return (after.stableNormalized() - before.stableNormalized()) / length;
+}
+
+PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& places, bool held,
+                         const SigmaModel& sigma) {
+  const int stroke = places[0].stroke, n = int(places.size());
+  const MatrixXd root = root_of(calibrated_covariance(measured, stroke, sigma.options));
+  const StrokeKind kind = measured.strokes[stroke].kind;
+  const ControlPoints controls = control_points(measured, stroke);
+  const double px = sigma.footprint, aside = sigma.options.place_px * px;
+  const double bend = sigma.options.curvature_px2 * px * px;
+  MatrixXd own(2 * n, root.cols());
+  MatrixXd other = MatrixXd::Zero(2 * n, kRigid + kBend + kScale + (held ? 0 : kPose));
+  PieceErrors out;
+  out.model.mean.resize(2, n);
+  for (int j = 0; j < n; ++j) {
+    const EdgePlace& p = places[j];
+    const Eigen::Matrix<double, 2, 3> across = frame_across(p.tangent);
+    out.model.mean.col(j) = across * p.deviation;
+    own.middleRows<2>(2 * j) =
+        across * curve_jacobian(kind, controls, p.t).leftCols(root.rows()) * root;
+    auto rows = other.middleRows<2>(2 * j);
+    rows.leftCols<kRigid>() = aside * across;
+    if (kind != StrokeKind::kLine && px > 0) {
+      // Where a curve bends within pixels, its edgels are off by pixels at the most.
+      const Vector3d curvature = curvature_at(measured, stroke, p.t);
+      rows.col(kRigid) = bend / std::max(1.0, px * curvature.norm()) * (across * curvature);
+    }
+    if (sigma.alignment)
+      rows.col(kRigid + kBend) =
+          sigma.options.scale_percent / 100 * (across * (p.measured - sigma.alignment->centre));
+    if (!held && sigma.alignment)
+      rows.rightCols<kPose>() = across * pose_modes(*sigma.alignment, p.measured);
+  }
+  out.sigma = largest_deviation(own);
+  out.systematic = largest_deviation(other);
+  out.model.modes.resize(2 * n, own.cols() + other.cols());
+  out.model.modes << own, other;
+  return out;
+}
+
+}  // namespace sketchsplat
