@@ -183,6 +183,9 @@ int run_command_line(int argc, const char* const* argv, const std::vector<Verb>&
     return complain(kTooLittle, e.what());
   } catch (const OutputError& e) {
     return complain(kNoOutput, e.what());
+  } catch (const NotAllInError& e) {
+    std::cout.flush();
+    return complain(kNotAllIn, e.what());
   } catch (const std::bad_alloc&) {
     return complain(kDefect, "out of memory");
   } catch (const std::exception& e) {

@@ -118,7 +118,7 @@ std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field
   text += "  --version                   Show the version\n";
   text +=
       "\nExit status: 0 done, 2 wrong usage, 3 unusable input, 4 too little in the scene,\n"
-      "5 output cannot be written, 1 a defect of the program.\n";
+      "5 output cannot be written, 7 inspected and not all in, 1 a defect of the program.\n";
   return text;
 }
 
