@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "datasets/errors.h"
+#include "datasets/json_file.h"
 #include "datasets/scene.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
@@ -29,12 +30,14 @@ struct InspectArguments {
   std::string results;  // one a line
   std::string nominal, out, scene;
   std::string datums;  // one a line
+  std::string calibration, prior = "part";
   LengthUnit unit = LengthUnit::kMillimetre;
   double scale = 0;          // units per world unit; 0: fitted
   double nominal_scale = 1;  // units per unit of a sketch.json
   double reach_percent = 1.5;
   double smooth_angle_deg = 1;
   int overlays = 2;
+  bool pieces = false;
   InspectOptions inspect;
 };
 
@@ -210,6 +213,11 @@ Inspection inspect_one(const std::string& result, const NominalFile& file,
   write_inspection(
       folder, inspection, file.nominal, a.inspect, *title,
       draw_worst(folder, inspection, file.nominal, scene, scale, a.overlays, progress));
+  if (a.pieces)
+    write_atomically(folder + "/inspection_pieces.json", [&](std::ostream& out) {
+      out << pieces_json(inspection, file.nominal,
+                         scale * origin.footprint * inspection.alignment.pose.scale);
+    });
   for (const std::string& warning : inspection.warnings)
     progress->warn((alone ? "" : result + ": ") + warning);
   return inspection;
@@ -259,8 +267,19 @@ void inspect_lot(const std::vector<std::string>& results, const NominalFile& fil
                         std::to_string(results.size()) + " parts");
 }
 
+// Numbers by the names that inspection.json gives them.
+void read_calibration(const std::string& path, SigmaOptions* options) {
+  const nlohmann::json json = load_json(path);
+  const JsonValue file{&json, path, ""};
+  for (const auto& [name, value] : named_numbers(options)) {
+    *value = file[name].number();
+    if (!(*value >= 0)) file[name].complain("a number that is not negative");
+  }
+}
+
 void run_inspect(InspectArguments a, Progress* progress) {
   InspectOptions& o = a.inspect;
+  if (!a.calibration.empty()) read_calibration(a.calibration, &o.sigma);
   if (!(o.tolerance > 0) && o.iso == Iso2768::kNone)
     throw UsageError("inspect needs --tolerance X or --iso2768 f|m|c|v");
   const std::vector<std::string> results = lines_of(a.results);
@@ -269,6 +288,7 @@ void run_inspect(InspectArguments a, Progress* progress) {
   if (a.scale == 0 && o.align.to == AlignTo::kAsGiven)
     throw UsageError("--align as-given needs --scale");
   o.unit_mm = millimetres(a.unit);
+  o.learn_prior = a.prior == "part";
   o.align.fit_scale = a.scale == 0;
   o.align.datums = lines_of(a.datums);
   o.associate.reach = a.reach_percent / 100;
@@ -280,19 +300,6 @@ void run_inspect(InspectArguments a, Progress* progress) {
   std::cout << inspection_table(inspection, file.nominal, title) << folder_of(results[0], a, true)
             << "/inspection.html: to look at\n";
   if (inspection.verdict != Judgement::kIn) answer_no(inspection);
-}
-
-void list_sigma_fields(SigmaOptions* s, Fields* f) {
-  f->group("Errors, see docs/inspect.md");
-  f->add("scale-sigma", &s->scale_percent, "%", 0, 100, "Standard deviation of the scale");
-  f->add("sigma-straight", &s->straight, "", 0, 100,
-         "Standard deviation of lines over what their edgels say");
-  f->add("sigma-curved", &s->curved, "", 0, 100, "The same of other curves");
-  f->add("sigma-place", &s->place_px, "px", 0, 100, "By which a curve may be off as a whole");
-  f->add("sigma-curvature", &s->curvature_px2, "px^2", 0, 100,
-         "Over the radius in pixels: by which a curve may be off towards its centre");
-  f->add("tail-share", &s->tail_share, "", 0, 1, "Of curves are worse than that");
-  f->add("tail-factor", &s->tail_factor, "", 1, 100, "By so much");
 }
 
 Fields list_inspect_fields(InspectArguments* a) {
@@ -329,9 +336,16 @@ Fields list_inspect_fields(InspectArguments* a) {
         "That can see what must be found");
   f.add("smooth-angle", &a->smooth_angle_deg, "deg", 0.01, 89,
         "Faces of the STEP file that meet at less have no edge");
-  list_sigma_fields(&a->inspect.sigma, &f);
+  f.group("Errors");
+  f.add("scale-sigma", &a->inspect.sigma.scale_percent, "%", 0, 100,
+        "Standard deviation of the scale");
+  f.choose("prior", &a->prior, {"part", "none"},
+           "Deviations to expect: as those of all edges of the part, or of any scale");
+  f.add("calibration", &a->calibration, "FILE.json",
+        "Other numbers for sigma_model of inspection.json, from eval/calibrate_inspection.py");
   f.group("Output");
   f.add("overlays", &a->overlays, "images", 0, 100, "That the worst edges are drawn over");
+  f.add("pieces", &a->pieces, "Write inspection_pieces.json, for eval/calibrate_inspection.py");
   return f;
 }
 

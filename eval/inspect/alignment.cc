@@ -54,8 +54,9 @@ Vector7 solve(const PoseSystem& system, const MatrixXd& basis, double least, Mat
     else
       open = k + 1;
   }
-  if (left) *left = basis * es.eigenvectors().leftCols(open);
-  return basis * move;
+  const Vector7 out = basis * move;
+  if (left) *left = (basis * es.eigenvectors().leftCols(open)).eval();  // may be the basis
+  return out;
 }
 
 class Aligner {

@@ -139,6 +139,16 @@ std::vector<std::vector<EdgePlace>> nominal_places(const Nominal& nominal, doubl
   return out;
 }
 
+std::vector<EdgePlace> places_beside(const EdgeMatch& match, int stroke, int most) {
+  std::vector<EdgePlace> all, few;
+  for (const EdgePlace& p : match.places)
+    if (p.stroke == stroke) all.push_back(p);
+  const int count = std::min(most, int(all.size()));
+  for (int i = 0; i < count; ++i)
+    few.push_back(all[count > 1 ? i * (all.size() - 1) / size_t(count - 1) : 0]);
+  return few;
+}
+
 Association associate(const Sketch& measured, const Nominal& nominal,
                       const AssociateOptions& options,
                       const std::vector<std::vector<int>>& seen_by) {

@@ -30,6 +30,9 @@ struct EdgeMatch {
   Presence presence = Presence::kMissing;
 };
 
+/// Places beside one stroke, at most so many, the first and the last among them.
+std::vector<EdgePlace> places_beside(const EdgeMatch& match, int stroke, int most);
+
 struct ExtraStroke {
   int stroke = 0;
   double length = 0;

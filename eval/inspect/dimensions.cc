@@ -337,6 +337,7 @@ DimensionCheck measure(const Dimension& dimension,
   for (const MeasuredFeature* f : features) {
     if (!f->value.ok) return out;
     values.push_back(f->value);
+    out.wide = std::max(out.wide, f->wide);
   }
   out.value = dimension_value(dimension, values);
   out.measured = std::isfinite(out.value);

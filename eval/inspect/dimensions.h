@@ -47,6 +47,7 @@ struct DimensionCheck {
   bool measured = false;
   double value = 0;
   double sigma = 0, systematic = 0;  ///< from the edgels; from what they do not know
+  double wide = 1;                   ///< by so much both grow in tails
 };
 
 /// Measures all of them; the errors of a stroke that two features share count once.

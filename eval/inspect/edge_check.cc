@@ -11,17 +11,8 @@ namespace {
 // parabola that is largest between two of 13 places is 1.4 % less there, a cubic 4.2 %.
 constexpr int kPlaces = 13;
 constexpr double kBetween = 0.95;
-
-// Places beside one stroke, a few of many. Two lines are farthest apart at an end.
-std::vector<EdgePlace> few_places(const EdgeMatch& match, int stroke, bool straight) {
-  std::vector<EdgePlace> all, few;
-  for (const EdgePlace& p : match.places)
-    if (p.stroke == stroke) all.push_back(p);
-  const int count = std::min(straight ? 2 : kPlaces, int(all.size()));
-  for (int i = 0; i < count; ++i)
-    few.push_back(all[count > 1 ? i * (all.size() - 1) / size_t(count - 1) : 0]);
-  return few;
-}
+constexpr double kFloor = 0.01;  // [tolerances] of errors: better is not told apart
+// Two lines are farthest apart at an end: two places are all.
 
 void summarise(const EdgeMatch& match, EdgeCheck* check) {
   std::vector<std::pair<double, double>> gaps;
@@ -67,30 +58,57 @@ Judgement verdict_of(double probability) {
                                     : Judgement::kUndecided;
 }
 
-EdgeCheck check_edge(const EdgeMatch& match, const NominalEdge& edge, const Sketch& measured,
-                     bool held, double tolerance, const SigmaModel& sigma) {
-  EdgeCheck out;
-  out.presence = match.presence;
-  out.found = match.found;
-  out.visible = match.visible;
-  out.tolerance = tolerance;
-  summarise(match, &out);
-  std::vector<DeviationModel> pieces;
+MeasuredEdge measure_edge(const EdgeMatch& match, const NominalEdge& edge, const Sketch& measured,
+                          bool held, double tolerance, const SigmaModel& sigma) {
+  MeasuredEdge out;
+  EdgeCheck& check = out.check;
+  check.presence = match.presence;
+  check.found = match.found;
+  check.visible = match.visible;
+  check.tolerance = tolerance;
+  summarise(match, &check);
   for (const int s : match.strokes) {
     const bool straight =
         edge.kind == StrokeKind::kLine && measured.strokes[s].kind == StrokeKind::kLine;
-    PieceErrors errors = piece_errors(measured, few_places(match, s, straight), held, sigma);
+    const std::vector<EdgePlace> places = places_beside(match, s, straight ? 2 : kPlaces);
+    PieceErrors errors = piece_errors(measured, places, held, sigma);
     errors.model.between = straight ? 1 : kBetween;
-    out.sigma = std::max(out.sigma, errors.sigma);
-    out.systematic = std::max(out.systematic, errors.systematic);
-    out.open = out.open || is_open(measured, s);
-    pieces.push_back(std::move(errors.model));
+    check.sigma = std::max(check.sigma, errors.sigma);
+    check.systematic = std::max(check.systematic, errors.systematic);
+    check.open = check.open || is_open(measured, s);
+    out.pieces.emplace_back(errors, sigma.options.tail_share, rigid_deviations(places),
+                            kFloor * tolerance);
   }
-  if (!pieces.empty()) {
-    bound_tube(pieces, sigma.tail(), tolerance, &out.within);
-    out.largest_drawn = draw_largest(pieces, sigma.tail());
+  return out;
+}
+
+DeviationPrior prior_of(const std::vector<MeasuredEdge>& edges, double tolerance, bool learn) {
+  const DeviationPrior vague = vague_prior(tolerance);
+  if (!learn) return vague;
+  std::vector<const PieceLikelihood*> pieces;
+  for (const MeasuredEdge& e : edges)
+    for (const PieceLikelihood& p : e.pieces) pieces.push_back(&p);
+  std::vector<std::vector<double>> evidence(pieces.size());
+  const int n = int(pieces.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < n; ++i)
+    for (const double scale : vague.scales) evidence[i].push_back(pieces[i]->log_evidence(scale));
+  return learn_prior(vague, evidence);
+}
+
+EdgeCheck judge_edge(const MeasuredEdge& edge, const DeviationPrior& prior) {
+  EdgeCheck out = edge.check;
+  if (!edge.pieces.empty()) {
+    std::vector<DeviationMixture> there, errors;
+    for (const PieceLikelihood& p : edge.pieces) {
+      there.push_back(p.posterior(prior));
+      errors.push_back(p.errors());
+    }
+    bound_tube(there, out.tolerance, &out.within);
+    out.largest_drawn = draw_largest(there);
     out.within.likely =
-        std::clamp(share_within(out.largest_drawn, tolerance), out.within.low, out.within.high);
+        std::clamp(share_within(out.largest_drawn, out.tolerance), out.within.low, out.within.high);
+    out.known = share_within(draw_largest(errors), out.tolerance);
     if (out.open) out.within.low = 0;
   }
   judge(&out);

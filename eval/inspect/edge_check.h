@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "eval/inspect/association.h"
+#include "eval/inspect/prior.h"
 #include "eval/inspect/sigma_model.h"
 #include "eval/inspect/tolerance.h"
 
@@ -25,11 +26,24 @@ struct EdgeCheck {
   bool open = false;                  ///< a stroke of it has a direction that no edgel determines
   TubeProbability within;             ///< of what was found
   std::vector<double> largest_drawn;  ///< kDraws largest deviations, ascending; empty if none
-  double tolerance = 0;               ///< radius of the tube
+  /// Probability that what was measured lies within the tolerance of what is there, whatever is
+  /// nominal: whether the measurement can tell at all.
+  double known = 0;
+  double tolerance = 0;  ///< radius of the tube
   Judgement verdict = Judgement::kUndecided;
 };
 
-EdgeCheck check_edge(const EdgeMatch& match, const NominalEdge& edge, const Sketch& measured,
-                     bool held, double tolerance, const SigmaModel& sigma);
+/// An edge before it is judged.
+struct MeasuredEdge {
+  EdgeCheck check;                      ///< without probabilities
+  std::vector<PieceLikelihood> pieces;  ///< one per stroke beside it
+};
+MeasuredEdge measure_edge(const EdgeMatch& match, const NominalEdge& edge, const Sketch& measured,
+                          bool held, double tolerance, const SigmaModel& sigma);
+
+/// What the edges of a part say of its deviations; `learn`: or nothing.
+DeviationPrior prior_of(const std::vector<MeasuredEdge>& edges, double tolerance, bool learn);
+
+EdgeCheck judge_edge(const MeasuredEdge& edge, const DeviationPrior& prior);
 
 }  // namespace sketchsplat

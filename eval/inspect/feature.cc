@@ -103,7 +103,7 @@ class StrokeErrors {
   StrokeErrors(const Sketch& measured, const SigmaModel& sigma, int stroke)
       : measured_(measured), sigma_(sigma), stroke_(stroke) {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> es(
-        calibrated_covariance(measured, stroke, sigma.options));
+        calibrated_covariance(measured, stroke, sigma));
     root_ = es.eigenvectors() * es.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   }
 
@@ -114,11 +114,8 @@ class StrokeErrors {
         Eigen::Matrix<double, 3, kErrorsOfStroke>::Zero();
     out.leftCols(root_.cols()) =
         curve_jacobian(kind, control_points(measured_, stroke_), t).leftCols(root_.rows()) * root_;
-    out.middleCols<3>(12) = sigma_.options.place_px * px * Matrix3d::Identity();
-    if (kind != StrokeKind::kLine && px > 0) {
-      const Vector3d c = curvature_at(measured_, stroke_, t);
-      out.col(15) = sigma_.options.curvature_px2 * px * px / std::max(1.0, px * c.norm()) * c;
-    }
+    out.middleCols<3>(12) = sigma_.place() * Matrix3d::Identity();
+    out.col(15) = sigma_.options.curvature_px2 * bend_at(measured_, stroke_, t, px);
     return out;
   }
 
@@ -181,6 +178,7 @@ MeasuredFeature measured_feature(const Nominal& nominal, const Association& asso
   if (!out.value.ok) return out;
   for (const auto& [stroke, members] : of_stroke) {
     const StrokeErrors errors(measured, sigma, stroke);
+    out.wide = std::max(out.wide, sigma.wide(measured.strokes[stroke].kind));
     std::vector<Eigen::Matrix<double, 3, kErrorsOfStroke>> moves;
     for (const int i : members) moves.push_back(errors.at(places[i].t));
     for (int k = 0; k < kErrorsOfStroke; ++k) {

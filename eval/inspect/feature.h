@@ -37,6 +37,7 @@ struct MeasuredFeature {
     Feature moved;
   };
   std::vector<Error> errors;
+  double wide = 1;  ///< by so much the errors of its worst stroke grow in tails
 };
 
 /// Of the nominal part itself, by the places of its edges.

@@ -71,18 +71,35 @@ double dimension_tolerance(const Dimension& d, double edges, const InspectOption
                : iso2768_linear(o.iso, d.nominal * o.unit_mm) / o.unit_mm;
 }
 
-DimensionResult judge(const DimensionCheck& check, double tolerance, const InspectOptions& o) {
-  DimensionResult out;
-  out.check = check;
-  out.tolerance = tolerance;
-  if (!check.measured) return out;
-  const double off = check.value - check.dimension.nominal;
-  const double sigma = std::hypot(check.sigma, check.systematic);
+// With the prior that all dimensions of the part say together, in units of their tolerances.
+std::vector<DimensionResult> judge(const std::vector<DimensionCheck>& checks, double tolerance,
+                                   const InspectOptions& o, DeviationPrior* prior) {
+  std::vector<DimensionResult> out;
+  std::vector<std::vector<double>> evidence;
+  const DeviationPrior vague = vague_prior(1);
   const double tail = o.sigma.tail_share;
-  out.probability = (1 - tail) * interval_probability(off, sigma, tolerance) +
-                    tail * interval_probability(off, o.sigma.tail_factor * sigma, tolerance);
-  if (is_angle(check.dimension.kind) || !o.align.fit_scale)
-    out.verdict = verdict_of(out.probability);
+  for (const DimensionCheck& c : checks) {
+    DimensionResult d;
+    d.check = c;
+    d.tolerance = dimension_tolerance(c.dimension, tolerance, o);
+    out.push_back(d);
+    if (!c.measured) continue;
+    std::vector<double> logs;
+    for (const double scale : vague.scales)
+      logs.push_back(number_log_evidence((c.value - c.dimension.nominal) / d.tolerance,
+                                         std::hypot(c.sigma, c.systematic) / d.tolerance, c.wide,
+                                         tail, scale));
+    evidence.push_back(logs);
+  }
+  *prior = o.learn_prior ? learn_prior(vague, evidence) : vague;
+  for (DimensionResult& d : out) {
+    const DimensionCheck& c = d.check;
+    if (!c.measured) continue;
+    d.probability = number_probability((c.value - c.dimension.nominal) / d.tolerance,
+                                       std::hypot(c.sigma, c.systematic) / d.tolerance, c.wide,
+                                       tail, 1, *prior);
+    if (is_angle(c.dimension.kind) || !o.align.fit_scale) d.verdict = verdict_of(d.probability);
+  }
   return out;
 }
 
@@ -93,14 +110,18 @@ Judgement worst(Judgement a, Judgement b) {
   return rank(b) > rank(a) ? b : a;
 }
 
-void check_edges(const Nominal& nominal, double tolerance, const SigmaModel& sigma,
+void check_edges(const Nominal& nominal, double tolerance, bool learn, const SigmaModel& sigma,
                  Inspection* out) {
   const int n = int(nominal.edges.size());
-  out->edges.resize(n);
+  std::vector<MeasuredEdge> measured(n);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int e = 0; e < n; ++e)
-    out->edges[e] = check_edge(out->association.edges[e], nominal.edges[e], out->measured,
+    measured[e] = measure_edge(out->association.edges[e], nominal.edges[e], out->measured,
                                out->alignment.holds[e], tolerance, sigma);
+  out->prior = prior_of(measured, tolerance, learn);
+  out->edges.resize(n);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int e = 0; e < n; ++e) out->edges[e] = judge_edge(measured[e], out->prior);
 }
 
 }  // namespace
@@ -121,12 +142,12 @@ Inspection inspect(const Nominal& nominal, const Sketch& measured, double footpr
   out.association = associate(out.measured, nominal, options.associate, seen_by);
   const bool moves = options.align.to == AlignTo::kBestFit;
   if (!moves) out.alignment.holds.assign(nominal.edges.size(), true);
-  const SigmaModel sigma{options.sigma, footprint * out.alignment.pose.scale, &out.alignment};
-  check_edges(nominal, tolerance, sigma, &out);
-  for (const DimensionCheck& d : measure_dimensions(find_dimensions(nominal, out.association),
-                                                    nominal, out.association, out.measured, sigma))
-    out.dimensions.push_back(
-        judge(d, dimension_tolerance(d.dimension, tolerance, options), options));
+  const SigmaModel sigma{options.sigma, footprint * out.alignment.pose.scale,
+                         typical_bias_px(measured), &out.alignment};
+  check_edges(nominal, tolerance, options.learn_prior, sigma, &out);
+  out.dimensions = judge(measure_dimensions(find_dimensions(nominal, out.association), nominal,
+                                            out.association, out.measured, sigma),
+                         tolerance, options, &out.dimension_prior);
   warn_of_pose(nominal, measured, options, &out);
   warn_of_sigma(measured, footprint, &out.warnings);
   for (const EdgeCheck& e : out.edges) out.verdict = worst(out.verdict, e.verdict);

@@ -22,6 +22,9 @@ struct InspectOptions {
   double unit_mm = 1;            ///< millimetres of the nominal's unit, for the table
   AlignOptions align;
   AssociateOptions associate;
+  /// How large deviations are is learned from all edges of the part (eval/inspect/prior.h); else
+  /// every scale is as likely as any other.
+  bool learn_prior = true;
   SigmaOptions sigma;
 };
 
@@ -36,8 +39,10 @@ struct DimensionResult {
 struct Inspection {
   Alignment alignment;
   Sketch measured;
-  Association association;       ///< of nominal.edges
-  std::vector<EdgeCheck> edges;  ///< of nominal.edges
+  Association association;         ///< of nominal.edges
+  DeviationPrior prior;            ///< of the edges' deviations
+  DeviationPrior dimension_prior;  ///< of dimensions, scales in tolerances
+  std::vector<EdgeCheck> edges;    ///< of nominal.edges
   std::vector<DimensionResult> dimensions;
   std::vector<std::string> warnings;
   Judgement verdict = Judgement::kIn;  ///< out if anything is, else undecided if anything is

@@ -9,6 +9,7 @@
 
 #include "eval/inspect/csv_row.h"
 #include "sketches/curve_chain.h"
+#include "sketches/curve_jacobian.h"
 
 namespace sketchsplat {
 namespace {
@@ -42,11 +43,11 @@ Json alignment_json(const Alignment& a, const InspectOptions& o) {
   return out;
 }
 
-Json sigma_json(const SigmaOptions& s) {
-  return {{"straight", s.straight},          {"curved", s.curved},
-          {"place_px", s.place_px},          {"curvature_px2", s.curvature_px2},
-          {"tail_share", s.tail_share},      {"tail_factor", s.tail_factor},
-          {"scale_percent", s.scale_percent}};
+Json sigma_json(SigmaOptions options) {
+  Json out;
+  for (const auto& [name, value] : named_numbers(&options)) out[name] = *value;
+  out["scale_percent"] = options.scale_percent;
+  return out;
 }
 
 Json quantiles_of(const std::vector<double>& ascending) {
@@ -87,6 +88,7 @@ Json edge_json(const Inspection& inspection, const Nominal& nominal, size_t i,
   out["probability"] = any ? number(e.within.likely) : Json();
   out["low"] = any ? number(e.within.low) : Json();
   out["high"] = any ? number(e.within.high) : Json();
+  out["known"] = any ? number(e.known) : Json();
   out["largest_quantiles"] = quantiles_of(e.largest_drawn);
   out["verdict"] = verdict_name(e.verdict);
   return out;
@@ -108,6 +110,7 @@ Json dimension_json(const DimensionResult& d, const Nominal& nominal) {
   out["deviation"] = c.measured ? number(c.value - c.dimension.nominal) : Json();
   out["sigma"] = c.measured ? number(c.sigma) : Json();
   out["systematic"] = c.measured ? number(c.systematic) : Json();
+  out["wide"] = c.measured ? number(c.wide) : Json();
   out["tolerance"] = number(d.tolerance);
   out["probability"] = c.measured ? number(d.probability) : Json();
   out["verdict"] = verdict_name(d.verdict);
@@ -178,6 +181,11 @@ std::string inspection_json(const Inspection& inspection, const Nominal& nominal
   out["iso2768"] = kGrades[int(options.iso)];
   out["sigma_model"] = sigma_json(options.sigma);
   out["alignment"] = alignment_json(inspection.alignment, options);
+  out["prior"] = {{"learned", options.learn_prior},
+                  {"scales", inspection.prior.scales},
+                  {"weights", inspection.prior.weights},
+                  {"dimension_scales", inspection.dimension_prior.scales},
+                  {"dimension_weights", inspection.dimension_prior.weights}};
   out["summary"] = summary_json(inspection);
   out["warnings"] = inspection.warnings;
   out["quantile_shares"] = quantile_shares();
@@ -239,6 +247,44 @@ std::string inspection_csv(const Inspection& inspection, const Nominal& nominal)
     out += row.text();
   }
   return out;
+}
+
+std::string pieces_json(const Inspection& inspection, const Nominal& nominal, double footprint) {
+  const SigmaModel raw;  // without a footprint: the covariances as they are
+  const Sketch& measured = inspection.measured;
+  const auto row_major = [](const Eigen::MatrixXd& m) {
+    Json out = Json::array();
+    for (Eigen::Index i = 0; i < m.rows(); ++i)
+      for (Eigen::Index k = 0; k < m.cols(); ++k) out.push_back(number(m(i, k)));
+    return out;
+  };
+  Json pieces = Json::array();
+  for (size_t e = 0; e < nominal.edges.size(); ++e)
+    for (const int s : inspection.association.edges[e].strokes) {
+      const std::vector<EdgePlace> places = places_beside(inspection.association.edges[e], s, 5);
+      const int n = 2 * int(places.size());
+      const Eigen::MatrixXd modes = piece_errors(measured, places, true, raw).model.modes;
+      Eigen::MatrixXd shift(n, 3), bend(n, 1), off(n, 1);
+      for (int j = 0; j < n / 2; ++j) {
+        const Eigen::Matrix<double, 2, 3> across = frame_across(places[j].tangent);
+        shift.middleRows<2>(2 * j) = across;
+        bend.middleRows<2>(2 * j) = across * bend_at(measured, s, places[j].t, footprint);
+        off.middleRows<2>(2 * j) = across * places[j].deviation;
+      }
+      const Evidence& evidence = measured.evidence[s];
+      pieces.push_back({{"edge", nominal.edges[e].name},
+                        {"presence", presence_name(inspection.edges[e].presence)},
+                        {"kind", kind_name(measured.strokes[s].kind)},
+                        {"footprint", number(footprint)},
+                        {"sigma", number(evidence.sigma)},
+                        {"bias_px", number(evidence.bias_px)},
+                        {"view_bias_px", number(typical_bias_px(measured))},
+                        {"deviation", row_major(off)},
+                        {"covariance", row_major(modes * modes.transpose())},
+                        {"shift", row_major(shift)},
+                        {"bend", row_major(bend)}});
+    }
+  return Json{{"pieces", pieces}}.dump() + "\n";
 }
 
 std::string inspection_table(const Inspection& inspection, const Nominal& nominal,

@@ -26,6 +26,12 @@ std::string inspection_json(const Inspection& inspection, const Nominal& nominal
 /// inspection.csv: a row per edge, dimension and curve that the nominal part has not.
 std::string inspection_csv(const Inspection& inspection, const Nominal& nominal);
 
+/// inspection_pieces.json: of every edge and stroke on it, how far it is off at some places, along
+/// two directions across the edge, and what is known of errors there: the covariance of the stroke,
+/// not calibrated, directions of a shift and of the curvature. eval/calibrate_inspection.py fits
+/// SigmaOptions to it. `footprint`: length of a pixel in the nominal's unit.
+std::string pieces_json(const Inspection& inspection, const Nominal& nominal, double footprint);
+
 /// The worst of it and how much is in, for the terminal.
 std::string inspection_table(const Inspection& inspection, const Nominal& nominal,
                              const InspectionTitle& title);

@@ -31,13 +31,15 @@ constexpr Angular kAngular[] = {
     {400, {10, 10, 15, 30}}, {HUGE_VAL, {5, 5, 10, 20}},
 };
 
+constexpr double kAlmost = 1 + 1e-9;  // sizes from files are rounded
+
 }  // namespace
 
 double iso2768_linear(Iso2768 grade, double size_mm) {
   if (grade == Iso2768::kNone) return 0;
   const int column = int(grade) - 1;
   int row = 0;
-  while (row + 1 < kRows && size_mm > kLinear[row].up_to) ++row;
+  while (row + 1 < kRows && size_mm > kLinear[row].up_to * kAlmost) ++row;
   while (kLinear[row].deviation[column] < 0) row += row == 0 ? 1 : -1;
   return kLinear[row].deviation[column];
 }
@@ -45,7 +47,7 @@ double iso2768_linear(Iso2768 grade, double size_mm) {
 double iso2768_angle(Iso2768 grade, double leg_mm) {
   if (grade == Iso2768::kNone) return 0;
   int row = 0;
-  while (leg_mm > kAngular[row].up_to) ++row;
+  while (leg_mm > kAngular[row].up_to * kAlmost) ++row;
   return kAngular[row].minutes[int(grade) - 1] / 60;
 }
 

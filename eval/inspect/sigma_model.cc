@@ -24,14 +24,6 @@ MatrixXd root_of(const MatrixXd& covariance) {
   return es.eigenvectors() * es.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
-Eigen::Matrix<double, 2, 3> frame_across(const Vector3d& tangent) {
-  Eigen::Matrix<double, 2, 3> f;
-  const Vector3d u = tangent.unitOrthogonal();
-  f.row(0) = u;
-  f.row(1) = tangent.cross(u);
-  return f;
-}
-
 double largest_deviation(const MatrixXd& modes) {
   double largest = 0;
   for (int j = 0; j + 1 < modes.rows(); j += 2) {
@@ -54,10 +46,48 @@ constexpr int kRigid = 3, kBend = 1, kScale = 1, kPose = 6;
 
 }  // namespace
 
-MatrixXd calibrated_covariance(const Sketch& measured, int stroke, const SigmaOptions& options) {
+std::vector<std::pair<std::string, double*>> named_numbers(SigmaOptions* o) {
+  return {{"straight_factor", &o->straight_factor},
+          {"straight_power", &o->straight_power},
+          {"curved_factor", &o->curved_factor},
+          {"curved_power", &o->curved_power},
+          {"place_px", &o->place_px},
+          {"place_of_views", &o->place_of_views},
+          {"curvature_px2", &o->curvature_px2},
+          {"tail_share", &o->tail_share},
+          {"straight_tail", &o->straight_tail},
+          {"curved_tail", &o->curved_tail}};
+}
+
+double SigmaModel::factor(const Stroke& stroke, const Evidence& e) const {
+  constexpr double kLeastBias = 0.004;  // [px] no views agree better than that but by chance
+  if (!(footprint > 0) || !(e.sigma > 0) || !(e.bias_px > 0)) return 1;
+  const bool straight = stroke.kind == StrokeKind::kLine;
+  const double ratio = std::max(kLeastBias, e.bias_px) * footprint / e.sigma;
+  return straight ? options.straight_factor * std::pow(ratio, options.straight_power)
+                  : options.curved_factor * std::pow(ratio, options.curved_power);
+}
+
+double SigmaModel::wide(StrokeKind kind) const {
+  return kind == StrokeKind::kLine ? options.straight_tail : options.curved_tail;
+}
+
+double SigmaModel::place() const {
+  return footprint * std::hypot(options.place_px, options.place_of_views * bias_px);
+}
+
+double typical_bias_px(const Sketch& measured) {
+  std::vector<double> bias;
+  for (const Evidence& e : measured.evidence) bias.push_back(e.bias_px);
+  if (bias.empty()) return 0;
+  std::nth_element(bias.begin(), bias.begin() + long(bias.size() / 2), bias.end());
+  return bias[bias.size() / 2];
+}
+
+MatrixXd calibrated_covariance(const Sketch& measured, int stroke, const SigmaModel& sigma) {
   const Evidence& e = measured.evidence[stroke];
   const StrokeKind kind = measured.strokes[stroke].kind;
-  const double factor = kind == StrokeKind::kLine ? options.straight : options.curved;
+  const double factor = sigma.factor(measured.strokes[stroke], e);
   const int n = 3 * num_controls(kind);
   if (!e.covariance.empty()) return factor * factor * from_upper_triangle(e.covariance);
   return std::pow(factor * e.sigma, 2) * MatrixXd::Identity(n, n);
@@ -91,14 +121,28 @@ Vector3d curvature_at(const Sketch& sketch, int stroke, double t) {
   return (after.stableNormalized() - before.stableNormalized()) / length;
 }
 
+Eigen::Matrix<double, 2, 3> frame_across(const Vector3d& tangent) {
+  Eigen::Matrix<double, 2, 3> f;
+  const Vector3d u = tangent.unitOrthogonal();
+  f.row(0) = u;
+  f.row(1) = tangent.cross(u);
+  return f;
+}
+
+Vector3d bend_at(const Sketch& measured, int stroke, double t, double footprint) {
+  if (measured.strokes[stroke].kind == StrokeKind::kLine || !(footprint > 0))
+    return Vector3d::Zero();
+  const Vector3d curvature = curvature_at(measured, stroke, t);
+  return footprint * footprint / std::max(1.0, footprint * curvature.norm()) * curvature;
+}
+
 PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& places, bool held,
                          const SigmaModel& sigma) {
   const int stroke = places[0].stroke, n = int(places.size());
-  const MatrixXd root = root_of(calibrated_covariance(measured, stroke, sigma.options));
+  const MatrixXd root = root_of(calibrated_covariance(measured, stroke, sigma));
   const StrokeKind kind = measured.strokes[stroke].kind;
   const ControlPoints controls = control_points(measured, stroke);
-  const double px = sigma.footprint, aside = sigma.options.place_px * px;
-  const double bend = sigma.options.curvature_px2 * px * px;
+  const double px = sigma.footprint, aside = sigma.place();
   MatrixXd own(2 * n, root.cols());
   MatrixXd other = MatrixXd::Zero(2 * n, kRigid + kBend + kScale + (held ? 0 : kPose));
   PieceErrors out;
@@ -111,17 +155,14 @@ PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& p
         across * curve_jacobian(kind, controls, p.t).leftCols(root.rows()) * root;
     auto rows = other.middleRows<2>(2 * j);
     rows.leftCols<kRigid>() = aside * across;
-    if (kind != StrokeKind::kLine && px > 0) {
-      // Where a curve bends within pixels, its edgels are off by pixels at the most.
-      const Vector3d curvature = curvature_at(measured, stroke, p.t);
-      rows.col(kRigid) = bend / std::max(1.0, px * curvature.norm()) * (across * curvature);
-    }
+    rows.col(kRigid) = sigma.options.curvature_px2 * (across * bend_at(measured, stroke, p.t, px));
     if (sigma.alignment)
       rows.col(kRigid + kBend) =
           sigma.options.scale_percent / 100 * (across * (p.measured - sigma.alignment->centre));
     if (!held && sigma.alignment)
       rows.rightCols<kPose>() = across * pose_modes(*sigma.alignment, p.measured);
   }
+  out.wide = sigma.wide(kind);
   out.sigma = largest_deviation(own);
   out.systematic = largest_deviation(other);
   out.model.modes.resize(2 * n, own.cols() + other.cols());

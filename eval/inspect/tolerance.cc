@@ -44,10 +44,6 @@ MatrixXd few_modes(const MatrixXd& modes) {
          es.eigenvalues().tail(n).cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
-double mixed(const Tail& tail, double narrow, double wide) {
-  return (1 - tail.share) * narrow + tail.share * wide;
-}
-
 }  // namespace
 
 double interval_probability(double mean, double sigma, double half) {
@@ -66,41 +62,51 @@ double square_probability(const Vector2d& mean, const Matrix2d& covariance, doub
   return product;
 }
 
-void bound_tube(const std::vector<DeviationModel>& pieces, const Tail& tail, double radius,
+void bound_tube(const std::vector<DeviationMixture>& pieces, double radius,
                 TubeProbability* probability) {
   double missed = 0, high = 1;
-  for (const DeviationModel& m : pieces)
-    for (int j = 0; j < m.mean.cols(); ++j) {
-      const auto rows = m.modes.middleRows<2>(2 * j);
-      const Matrix2d covariance = rows * rows.transpose();
-      const auto at = [&](double half) {
-        return mixed(
-            tail, square_probability(m.mean.col(j), covariance, half),
-            square_probability(m.mean.col(j), tail.factor * tail.factor * covariance, half));
-      };
-      missed += 1 - at(m.between * radius / std::sqrt(2.0));
-      high = std::min(high, at(radius));
+  for (const DeviationMixture& piece : pieces)
+    for (int j = 0; j < piece.parts[0].mean.cols(); ++j) {
+      double inscribed = 0, circumscribed = 0;
+      for (size_t k = 0; k < piece.parts.size(); ++k) {
+        const DeviationModel& m = piece.parts[k];
+        const auto rows = m.modes.middleRows<2>(2 * j);
+        const Matrix2d c = rows * rows.transpose();
+        inscribed += piece.weights[k] *
+                     square_probability(m.mean.col(j), c, m.between * radius / std::sqrt(2.0));
+        circumscribed += piece.weights[k] * square_probability(m.mean.col(j), c, radius);
+      }
+      missed += 1 - inscribed;
+      high = std::min(high, circumscribed);
     }
   probability->low = std::max(0.0, 1 - missed);
   probability->high = high;
 }
 
-std::vector<double> draw_largest(const std::vector<DeviationModel>& pieces, const Tail& tail) {
+std::vector<double> draw_largest(const std::vector<DeviationMixture>& pieces) {
   std::vector<double> largest(kDraws, 0);
-  const MatrixXd& numbers = normal_numbers();
   std::uint32_t shift = 0;
-  for (const DeviationModel& m : pieces) {
-    const MatrixXd modes = few_modes(m.modes);
-    const MatrixXd moves = modes * numbers.leftCols(modes.cols()).transpose();  // 2 P x draws
-    // Each piece has the draws in another order: pieces err independently.
-    for (int i = 0; i < kDraws; ++i) {
-      const std::uint32_t to = (std::uint32_t(i) * (2 * shift + 1) + 977 * shift) % kDraws;
-      const double wide = i < tail.share * kDraws ? tail.factor : 1;
-      double squared = 0;
-      for (int j = 0; j < m.mean.cols(); ++j)
-        squared =
-            std::max(squared, (m.mean.col(j) + wide * moves.block<2, 1>(2 * j, i)).squaredNorm());
-      largest[to] = std::max(largest[to], std::sqrt(squared));
+  for (const DeviationMixture& piece : pieces) {
+    double share = 0;
+    int from = 0;
+    for (size_t k = 0; k < piece.parts.size(); ++k) {
+      share += piece.weights[k];
+      const int to = k + 1 < piece.parts.size() ? int(std::lround(share * kDraws)) : kDraws;
+      const DeviationModel& m = piece.parts[k];
+      const MatrixXd modes = few_modes(m.modes);
+      const MatrixXd moves =  // 2 P x draws
+          modes * normal_numbers().block(from, 0, to - from, modes.cols()).transpose();
+      for (int i = from; i < to; ++i) {
+        double squared = 0;
+        for (int j = 0; j < m.mean.cols(); ++j)
+          squared =
+              std::max(squared, (m.mean.col(j) + moves.block<2, 1>(2 * j, i - from)).squaredNorm());
+        // Each piece has the draws in another order: pieces err independently.
+        double& there =
+            largest[(std::uint32_t(i) * (2 * shift + 1) + 977 * shift) % std::uint32_t(kDraws)];
+        there = std::max(there, std::sqrt(squared));
+      }
+      from = to;
     }
     ++shift;
   }

@@ -14,19 +14,19 @@ double interval_probability(double mean, double sigma, double half);
 double square_probability(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance,
                           double half);
 
-/// A normal distribution that is `factor` times as wide with probability `share`: curves that lie
-/// on something else than what they are taken for.
-struct Tail {
-  double share = 0, factor = 1;
-};
-
-/// How a measured curve deviates from its nominal one at some places along it: across the nominal
-/// curve mean + modes * z, z independent standard normal numbers that all places share.
+/// How a curve deviates from its nominal one at some places along it: across the nominal curve mean
+/// + modes * z, z independent standard normal numbers that all places share.
 struct DeviationModel {
   Eigen::Matrix2Xd mean;  ///< 2 x P
   Eigen::MatrixXd modes;  ///< 2 P x M
   /// What a deviation between neighbouring places may be is at most that of the places over this.
   double between = 1;
+};
+
+/// One of these or another, all at the same places.
+struct DeviationMixture {
+  std::vector<DeviationModel> parts;
+  std::vector<double> weights;  ///< of the parts, sum 1
 };
 
 /// Of the probability that a curve lies within a tube: what is proven, what is likely.
@@ -38,13 +38,13 @@ struct TubeProbability {
 /// both ways: at a place the square in the tube's disc is passed less, the square around it more
 /// often than the disc; all places are passed at least with 1 - sum (1 - P) (Boole), at most with
 /// the least P. `likely` is left alone.
-void bound_tube(const std::vector<DeviationModel>& pieces, const Tail& tail, double radius,
+void bound_tube(const std::vector<DeviationMixture>& pieces, double radius,
                 TubeProbability* probability);
 
 constexpr int kDraws = 4096;
 /// Largest deviations of so many draws of the curve, ascending: the share of them below a radius
 /// is the likely probability. The draws are the same in every run.
-std::vector<double> draw_largest(const std::vector<DeviationModel>& pieces, const Tail& tail);
+std::vector<double> draw_largest(const std::vector<DeviationMixture>& pieces);
 
 /// Share of ascending values that are at most `radius`.
 double share_within(const std::vector<double>& ascending, double radius);
