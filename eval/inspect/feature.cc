@@ -114,7 +114,8 @@ class StrokeErrors {
         Eigen::Matrix<double, 3, kErrorsOfStroke>::Zero();
     out.leftCols(root_.cols()) =
         curve_jacobian(kind, control_points(measured_, stroke_), t).leftCols(root_.rows()) * root_;
-    out.middleCols<3>(12) = sigma_.place() * Matrix3d::Identity();
+    out.middleCols<3>(12) = sigma_.place(measured_.strokes[stroke_], measured_.evidence[stroke_]) *
+                            Matrix3d::Identity();
     out.col(15) = sigma_.options.curvature_px2 * bend_at(measured_, stroke_, t, px);
     return out;
   }

@@ -49,10 +49,13 @@ constexpr int kRigid = 3, kBend = 1, kScale = 1, kPose = 6;
 std::vector<std::pair<std::string, double*>> named_numbers(SigmaOptions* o) {
   return {{"straight_factor", &o->straight_factor},
           {"straight_power", &o->straight_power},
+          {"straight_place", &o->straight_place},
+          {"straight_views", &o->straight_views},
           {"curved_factor", &o->curved_factor},
           {"curved_power", &o->curved_power},
+          {"curved_place", &o->curved_place},
+          {"curved_views", &o->curved_views},
           {"place_px", &o->place_px},
-          {"place_of_views", &o->place_of_views},
           {"curvature_px2", &o->curvature_px2},
           {"tail_share", &o->tail_share},
           {"straight_tail", &o->straight_tail},
@@ -72,8 +75,11 @@ double SigmaModel::wide(StrokeKind kind) const {
   return kind == StrokeKind::kLine ? options.straight_tail : options.curved_tail;
 }
 
-double SigmaModel::place() const {
-  return footprint * std::hypot(options.place_px, options.place_of_views * bias_px);
+double SigmaModel::place(const Stroke& stroke, const Evidence& e) const {
+  const bool straight = stroke.kind == StrokeKind::kLine;
+  const double own = (straight ? options.straight_place : options.curved_place) * e.bias_px;
+  const double all = (straight ? options.straight_views : options.curved_views) * bias_px;
+  return footprint * std::sqrt(own * own + all * all + options.place_px * options.place_px);
 }
 
 double typical_bias_px(const Sketch& measured) {
@@ -142,7 +148,8 @@ PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& p
   const MatrixXd root = root_of(calibrated_covariance(measured, stroke, sigma));
   const StrokeKind kind = measured.strokes[stroke].kind;
   const ControlPoints controls = control_points(measured, stroke);
-  const double px = sigma.footprint, aside = sigma.place();
+  const double px = sigma.footprint,
+               aside = sigma.place(measured.strokes[stroke], measured.evidence[stroke]);
   MatrixXd own(2 * n, root.cols());
   MatrixXd other = MatrixXd::Zero(2 * n, kRigid + kBend + kScale + (held ? 0 : kPose));
   PieceErrors out;

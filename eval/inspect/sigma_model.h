@@ -16,19 +16,23 @@ namespace sketchsplat {
 /// From what the edgels say of a stroke to how far off it is. The numbers are fitted by
 /// eval/calibrate_inspection.py, see docs/inspect.md.
 struct SigmaOptions {
-  /// Sigma over that of the covariance: factor (b / sigma)^power, b the length by which the
-  /// stroke's views disagree. The covariance knows the shape of the error; its size is of all
-  /// strokes together, and knows nothing of the regularities that average errors away.
-  double straight_factor = 0.47, straight_power = 1.0;
+  /// Of lines, then of all other curves. Sigma over that of the covariance: factor (b /
+  /// sigma)^power, b the length by which the stroke's views disagree. The covariance knows the
+  /// shape of the error; its size is of all strokes together, and knows nothing of the regularities
+  /// that average errors away.
+  double straight_factor = 0.27, straight_power = 0.43;
   double curved_factor = 0.87, curved_power = 0.4;
-  double place_px = 0.0037;      ///< [px] by which a stroke as a whole is off, in each direction
-  double place_of_views = 0.27;  ///< and as a share of what views of all strokes disagree by
+  /// By which a stroke is off as a whole, in each direction: shares of b and of the b of all
+  /// strokes.
+  double straight_place = 0.3, straight_views = 0.22;
+  double curved_place = 0.03, curved_views = 0.09;
+  double place_px = 0.001;  ///< [px] and always
   /// [px^2] over the radius of curvature [px]: by so much a curve lies nearer to, or farther from,
   /// its centre of curvature, because blurred edges do.
-  double curvature_px2 = 1.25;
-  double tail_share = 0.11;  ///< of strokes are worse
-  double straight_tail = 4;  ///< by so much
-  double curved_tail = 2.9;
+  double curvature_px2 = 1.5;
+  double tail_share = 0.1;     ///< of strokes are worse
+  double straight_tail = 3.5;  ///< by so much
+  double curved_tail = 2.2;
   double scale_percent = 0;  ///< [%] standard deviation of the scale
 };
 
@@ -44,7 +48,8 @@ struct SigmaModel {
 
   double factor(const Stroke& stroke, const Evidence& evidence) const;
   double wide(StrokeKind kind) const;  ///< sigma of the worse ones over the others'
-  double place() const;                ///< by which a stroke as a whole is off
+  double place(const Stroke& stroke,
+               const Evidence& evidence) const;  ///< by which it is off as a whole
 };
 
 /// Median over the strokes of what their views disagree by; 0 if there are none.
