@@ -199,8 +199,8 @@ int complain(ExitStatus status, const std::string& text) {
 }  // namespace
 
 std::vector<Verb> all_verbs() {
-  return {reconstruct_verb(), batch_verb(),      detect_verb(), evaluate_verb(),
-          export_verb(),      synthesize_verb(), bench_verb()};
+  return {reconstruct_verb(), batch_verb(),   detect_verb(),     evaluate_verb(),
+          export_verb(),      inspect_verb(), synthesize_verb(), bench_verb()};
 }
 
 int run_command_line(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
@@ -222,6 +222,9 @@ int run_command_line(int argc, const char* const* argv, const std::vector<Verb>&
   } catch (const SomeFailedError& e) {
     std::cout.flush();
     return complain(kSomeFailed, e.what());
+  } catch (const NotAllInError& e) {
+    std::cout.flush();
+    return complain(kNotAllIn, e.what());
   } catch (const Interrupted& e) {
     complain(kDefect, e.what());
     std::signal(e.number, SIG_DFL);  // whoever waits for us shall know

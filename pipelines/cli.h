@@ -21,6 +21,12 @@ enum ExitStatus {
   kTooLittle = 4,
   kNoOutput = 5,
   kSomeFailed = 6,
+  kNotAllIn = 7,
+};
+
+/// The verb did its work, and what it looked at is not as it should be; one sentence. Exit status 7.
+struct NotAllInError : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// Some scenes of a batch are not done; one sentence with their names. Exit status 6.
@@ -48,6 +54,7 @@ Verb reconstruct_verb();
 Verb detect_verb();
 Verb evaluate_verb();
 Verb export_verb();
+Verb inspect_verb();
 Verb synthesize_verb();
 Verb bench_verb();
 Verb batch_verb();

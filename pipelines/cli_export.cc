@@ -16,6 +16,7 @@
 #include "pipelines/outputs.h"
 #include "pipelines/print_json.h"
 #include "pipelines/report.h"
+#include "pipelines/sketch_input.h"
 #include "sketches/io.h"
 #include "sketches/json_text.h"
 
@@ -44,19 +45,6 @@ std::string format_of(const std::string& path) {
     if (ending == std::string(".") + same) return same;
   if (ending == ".json") return "parametric";
   return "";
-}
-
-// Accepts the folder that `reconstruct` wrote, too.
-std::string sketch_file(const std::string& given) {
-  std::error_code none;
-  return std::filesystem::is_directory(given, none) ? given + "/sketch.json" : given;
-}
-
-Sketch read_sketch(const std::string& given) {
-  const std::string path = sketch_file(given);
-  std::ifstream in(path);
-  if (!in) throw InputError(path, "a sketch.json", "no file that can be read");
-  return read_sketch_json(in, path);
 }
 
 // What sketch.json holds beside the sketch: the options, the names of the views.

@@ -123,7 +123,8 @@ std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field
   text += "  --completion SHELL          Show what completes words in bash, zsh or fish\n";
   text +=
       "\nExit status: 0 done, 2 wrong usage, 3 unusable input, 4 too little in the scene,\n"
-      "5 output cannot be written, 6 a batch of which some scenes failed, 1 a defect of the program.\n";
+      "5 output cannot be written, 6 a batch of which some scenes failed, 7 inspected and not all in,\n"
+      "1 a defect of the program.\n";
   return text;
 }
 

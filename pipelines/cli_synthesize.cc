@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <dlfcn.h>
-
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,12 +7,11 @@
 #include "datasets/errors.h"
 #include "datasets/synthetic/outputs.h"
 #include "datasets/synthetic/part_table.h"
-#include "datasets/synthetic/plugin.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
-#include "pipelines/plugin_path.h"
 #include "pipelines/print_json.h"
 #include "pipelines/run_report.h"
+#include "pipelines/synthesis_plugin.h"
 
 namespace sketchsplat {
 namespace {
@@ -25,16 +22,6 @@ struct SynthesizeArguments {
   bool list_parts = false;
   SynthesizeOptions options;
 };
-
-const SynthesisPlugin& load_plugin() {
-  const std::string path = synthesis_plugin_path();
-  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library)
-    throw std::runtime_error(std::string(kSynthesisPluginFile) + " cannot be loaded: " +
-                             ::dlerror());
-  using Get = const SynthesisPlugin*();
-  return *reinterpret_cast<Get*>(::dlsym(library, kSynthesisPluginSymbol))();
-}
 
 // The user's NAME=VALUE lines for this part.
 PartValues part_values(const std::string& part, const std::string& lines) {
@@ -92,7 +79,7 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
     throw UsageError(std::string("--") + e.what());
   }
   options.parameters = part_values(options.part, arguments.parameters);
-  const SynthesisPlugin& plugin = load_plugin();
+  const SynthesisPlugin& plugin = synthesis_plugin();
   const std::unique_ptr<SyntheticScene, void (*)(SyntheticScene*)> made(
       plugin.synthesize(arguments.options), plugin.release);
   const SyntheticScene& scene = *made;
@@ -197,10 +184,6 @@ void list_part_fields(SynthesizeArguments* a, Fields* f) {
 }
 
 }  // namespace
-
-std::string synthesis_plugin_path() {
-  return plugin_path(kSynthesisPluginFile, SKETCHSPLAT_SYNTHESIS_FOLDER);
-}
 
 Verb synthesize_verb() {
   const auto arguments = std::make_shared<SynthesizeArguments>();

@@ -75,6 +75,8 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
   extra["options"] = Json::parse(options_json);
   extra["regularities"] = json_of(reconstruction.report.regularities);
   extra["views"] = reconstruction.views;
+  for (const auto& [name, value] : reconstruction.report.counts)
+    if (name == "footprint") extra[name] = value;
   if (reconstruction.proposed.size() > 0) {
     std::ostringstream proposed;
     write_sketch_json(proposed, reconstruction.proposed);

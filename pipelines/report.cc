@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipelines/overlay.h"
-#include "pipelines/report_page.h"
+#include "pipelines/page.h"
 #include "pipelines/version.h"
 #include "sketches/curve.h"
 #include "sketches/curve_chain.h"
@@ -99,20 +99,6 @@ Json curves_json(const Sketch& sketch) {
   return curves;
 }
 
-std::string base64(const std::string& bytes) {
-  static const char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t word = 0;
-    for (size_t k = 0; k < 3; ++k)
-      word = word << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
-    for (int k = 3; k >= 0; --k)
-      text += i + size_t(3 - k) > bytes.size() ? '=' : kDigits[word >> (6 * k) & 63];
-  }
-  return text;
-}
-
 }  // namespace
 
 Extent sketch_extent(const Sketch& sketch) {
@@ -166,22 +152,7 @@ std::string report_html(const std::string& report, const Sketch& sketch,
   for (const ReportImage& image : overlays)
     data["overlays"].push_back({{"name", image.name}, {"png", base64(image.png)}});
 
-  const std::string page = kReportPage, mark = "@DATA@";
-  const size_t at = page.find(mark);
-  return page.substr(0, at) + without_tags(dump(data, -1)) + page.substr(at + mark.size());
-}
-
-// "<" appears in JSON inside of strings only.
-std::string without_tags(const std::string& json) {
-  std::string safe;
-  safe.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  }
-  return safe;
+  return fill_page(kReportPage, dump(data, -1));
 }
 
 }  // namespace sketchsplat

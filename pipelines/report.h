@@ -29,9 +29,6 @@ struct ReportImage {
 std::string report_html(const std::string& report, const Sketch& sketch,
                         const std::vector<ReportImage>& overlays);
 
-/// JSON that no text in it can end, where it stands in a script element.
-std::string without_tags(const std::string& json);
-
 /// Box around the curves, from samples of them; zero-sized at the origin if there are none.
 struct Extent {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();

@@ -398,6 +398,7 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
   report->counts.push_back({"loose_ends", double(count_loose_ends(out, world.footprint))});
   report->counts.push_back({"unsure", double(unsure)});
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
+  report->counts.push_back({"footprint", world.footprint});
   stage.result(std::to_string(out.size()) + " strokes");
   return out;
 }

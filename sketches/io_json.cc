@@ -69,6 +69,7 @@ Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<in
   out["opacity"] = e.opacity;
   out["support_views"] = e.support_views;
   out["rms_px"] = e.rms_px;
+  if (e.bias_px > 0) out["bias_px"] = e.bias_px;
   out["sigma"] = e.sigma;
   if (!std::isnan(e.confidence)) out["confidence"] = e.confidence;
   if (!e.views.empty()) out["views"] = e.views;
@@ -164,6 +165,7 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
   if (j.contains("support_views"))
     e.support_views = reader.integer(j["support_views"], "a count as support_views in " + where);
   e.rms_px = reader.number(j, "rms_px", e.rms_px, where);
+  e.bias_px = reader.number(j, "bias_px", e.bias_px, where);
   e.sigma = reader.number(j, "sigma", e.sigma, where);
   e.confidence = reader.number(j, "confidence", e.confidence, where);
   if (j.contains("views"))

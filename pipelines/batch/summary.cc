@@ -8,8 +8,7 @@
 #include <ostream>
 
 #include "eval/csv.h"
-#include "pipelines/batch/index_page.h"
-#include "pipelines/report.h"
+#include "pipelines/page.h"
 #include "pipelines/version.h"
 
 namespace sketchsplat {
