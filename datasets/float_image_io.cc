@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 #include "datasets/errors.h"
@@ -65,6 +66,23 @@ std::vector<FloatChannel> read_exr(const std::string& path) {
     channels[c].values.data = std::move(planes.plane[c]);
   }
   return channels;
+}
+
+void write_jpeg(const std::string& path, const Picture& picture, int quality) {
+  const ImagePlugin* plugin = image_plugin();
+  if (!plugin) throw OutputError(path, kNoPlugin);
+  std::vector<unsigned char> bytes;
+  std::string found;
+  if (!plugin->encode_jpeg(interleaved_bytes(picture).data(), picture.width(), picture.height(),
+                           quality, &bytes, &found))
+    throw OutputError(path, found);
+  const std::string part = path + "." + std::to_string(::getpid()) + ".part";
+  std::ofstream out(part, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  out.close();
+  if (out && std::rename(part.c_str(), path.c_str()) == 0) return;
+  std::remove(part.c_str());
+  throw OutputError(path, std::strerror(errno));
 }
 
 Picture through_jpeg(const Picture& picture, int quality) {

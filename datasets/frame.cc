@@ -14,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kLargest = 1e100;   // cubes of it overflow
 constexpr double kTolerance = 1e-3;  // of entries that are 0 or 1 in a rigid transform or a K
 
 /// Nearest rotation in the least-squares sense. Reference: S. Umeyama, PAMI 13(4), 1991.
@@ -24,6 +25,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m) {
 
 std::string complaint_about_pose(const Eigen::Matrix4d& pose) {
   if (!pose.allFinite()) return "its pose is not finite";
+  if (pose.cwiseAbs().maxCoeff() > kLargest) return "its pose holds numbers that are too large";
   const Eigen::Matrix3d R = pose.topLeftCorner<3, 3>();
   if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance) {
     return "its pose is no rotation";

@@ -14,6 +14,7 @@
 #include "datasets/ply.h"
 #include "sketches/curve.h"
 #include "sketches/io.h"
+#include "sketches/json_text.h"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -218,7 +219,7 @@ GroundTruth read_json(const fs::path& file) {
   if (!in) throw InputError(path, "ground truth", "nothing that can be opened");
   GroundTruth truth;
   try {
-    const json document = json::parse(in);
+    const json document = parse_json<json>(in, path);
     if (document.is_object() && document.contains("strokes")) {
       truth = read_sketch(file);
     } else {
@@ -288,7 +289,7 @@ void undo_world_to_gt(const fs::path& scene, GroundTruth* truth) {
   if (!in) return;
   Eigen::Matrix4d gt_from_world = Eigen::Matrix4d::Identity();
   try {
-    const json document = json::parse(in);
+    const json document = parse_json<json>(in, (scene / "meta_data.json").string());
     if (!document.contains("worldtogt")) return;
     for (int r = 0; r < 4; ++r) {
       for (int c = 0; c < 4; ++c) gt_from_world(r, c) = document["worldtogt"].at(r).at(c);

@@ -14,6 +14,7 @@ const ImagePlugin* load_plugin() {
   const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
   for (const fs::path& folder :
        {bin, bin / ".." / "lib" / "sketchsplat", fs::path(SKETCHSPLAT_PLUGIN_FOLDER)}) {
+    if (!folder.is_absolute()) continue;  // without /proc nobody knows where we are
     void* library = ::dlopen((folder / kImagePluginFile).c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) continue;
     using Get = const ImagePlugin*();

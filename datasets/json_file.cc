@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/errors.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace {
@@ -102,8 +103,11 @@ json load_json(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf())) throw InputError(path, "a JSON file", "nothing to read");
-  json parsed = json::parse(text.str(), nullptr, false);
-  if (!parsed.is_discarded()) return parsed;
+  try {
+    return parse_json_text<json>(text.str(), path);
+  } catch (const json::parse_error&) {
+    // perhaps because of a NaN
+  }
   try {
     return json::parse(without_nan(text.str()));
   } catch (const json::parse_error& e) {

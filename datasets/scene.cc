@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "datasets/errors.h"
+#include "datasets/far_views.h"
 #include "datasets/format.h"
 
 namespace sketchsplat {
@@ -69,11 +70,18 @@ Scene open_scene(const std::string& folder, const std::string& format) {
   scene.folder = folder;
   scene.format = reader.name;
   reader.read(folder, &scene);
+  leave_out_far_views(&scene);
   if (scene.views.empty()) {
     throw InputError(folder, "a scene with frames that can be used",
                      scene.warnings.empty() ? "no frame" : "none (" + scene.warnings.front() + ")");
   }
   return scene;
+}
+
+bool is_scene_folder(const std::string& folder, const std::string& format) {
+  return std::any_of(std::begin(kFormats), std::end(kFormats), [&](const SceneFormat* known) {
+    return (format.empty() || format == known->name) && known->is_marked(folder);
+  });
 }
 
 std::vector<std::string> scene_formats() {

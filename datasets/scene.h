@@ -33,6 +33,9 @@ struct Scene {
 /// Throws InputError (no such folder, no marker, broken JSON, missing keys, no usable frame).
 Scene open_scene(const std::string& folder, const std::string& format = "");
 
+/// Whether open_scene would find the marker of that format, or of any if it is empty.
+bool is_scene_folder(const std::string& folder, const std::string& format = "");
+
 /// Names that open_scene accepts as `format`, in the order in which it looks for them.
 std::vector<std::string> scene_formats();
 

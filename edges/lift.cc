@@ -289,7 +289,7 @@ std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& opt
       if (!sweeper.lift(view, seeds[k], &lifted[k], &matches[k])) matches[k].clear();
     for (size_t k = 0; k < seeds.size(); ++k) {
       if (matches[k].empty()) continue;
-      points.push_back(lifted[k]);
+      if (world.object.contains(lifted[k].position)) points.push_back(lifted[k]);
       if (lifted[k].views < 2 * options.min_views) continue;
       for (const Match& m : matches[k]) {
         const int size = int(explained[m.view].size());

@@ -8,6 +8,7 @@
 #include "datasets/view.h"
 #include "edges/detect.h"
 #include "edges/hull.h"
+#include "edges/object_region.h"
 
 namespace sketchsplat {
 
@@ -19,17 +20,21 @@ struct EdgeWorld {
   /// edgel.
   std::vector<Eigen::Matrix3Xf> plane_normal;
   Eigen::AlignedBox3d bounds;  ///< holds the object, world units
+  ObjectRegion object;         ///< what is known of it; nothing, as a rule, where masks tell
   double footprint = 0;        ///< world length of one pixel at the object (median over the views)
   VisualHull hull;             ///< of the masks; empty without
 };
 
-/// Bounds from the edgels' boxes in all views: the part of space that (nearly) every view sees
-/// inside its own box of edgels. Views without edgels do not vote. `bounds` is empty if nothing
-/// remains.
+/// Bounds from the edgels' boxes in all views: with masks, the part of space that (nearly) every
+/// view sees inside its own box of edgels; without, the part of what the cameras look at that a
+/// quarter of them sees. Views without edgels do not vote. `bounds` is empty if nothing remains.
 EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps);
 
 /// EdgeWorld::plane_normal of a view.
 Eigen::Matrix3Xf plane_normals(const View& view, const EdgelMap& map);
+
+/// The point nearest to all optical axes.
+Eigen::Vector3d meeting_point(const std::vector<View>& views);
 
 /// Points on edges in space.
 struct EdgePoint {
@@ -52,7 +57,7 @@ struct LiftOptions {
 
 /// Space sweep: every edgel (every stride_px of a chain) is tried at all depths inside the bounds;
 /// the depth and tangent on which most other views agree is kept and refined. Edgels that a good
-/// point already explains are not lifted again. Same result for any number of threads.
+/// point already explains are not lifted again, points outside of the object are left out. Same result for any number of threads.
 std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& options);
 
 }  // namespace sketchsplat

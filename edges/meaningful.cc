@@ -147,16 +147,6 @@ void cut(const std::vector<Place>& places, int last_edgel, double tests, double 
   if (begin < n && best > 0) close(begin, n);
 }
 
-// The least meaning of pieces that are together at most `most` edgels.
-double least_of(std::vector<Piece> pieces, double most) {
-  std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const Piece& a, const Piece& b) { return a.meaning > b.meaning; });
-  double edgels = 0;
-  for (const Piece& p : pieces)
-    if ((edgels += p.end - p.begin) > most) return p.meaning + 1e-9;
-  return -INFINITY;
-}
-
 }  // namespace
 
 void keep_meaningful(const cv::Mat1f& magnitude, const MeaningOptions& options, EdgelMap* map) {
@@ -174,13 +164,9 @@ void keep_meaningful(const cv::Mat1f& magnitude, const MeaningOptions& options, 
                         meaning_of(places, 0, places.size(), tests)});
     }
   }
-  double bound = -INFINITY;
-  if (options.most_sides > 0)
-    bound = least_of(pieces, options.most_sides * std::sqrt(double(map->width) * map->height));
   EdgelMap out;
   out.chain.push_back(0);
   for (const Piece& p : pieces) {
-    if (p.meaning < bound) continue;
     out.edgels.insert(out.edgels.end(), map->edgels.begin() + p.begin,
                       map->edgels.begin() + p.end);
     out.chain.push_back(int(out.edgels.size()));

@@ -54,6 +54,7 @@ EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int m
   EdgeWorld out;
   out.views = world.views;
   out.bounds = world.bounds;
+  out.object = world.object;
   out.footprint = world.footprint;
   out.hull = world.hull;
   out.maps.resize(n);

@@ -10,19 +10,7 @@ namespace {
 
 constexpr int kGrid = 48;
 constexpr int kHullCells = 128;
-
-// The point nearest to all optical axes.
-Eigen::Vector3d meeting_point(const std::vector<View>& views) {
-  Eigen::Matrix3d A = Eigen::Matrix3d::Identity() * 1e-9;
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  for (const View& v : views) {
-    const Eigen::Vector3d axis = v.cam_from_world.rotation.row(2);
-    const Eigen::Matrix3d M = Eigen::Matrix3d::Identity() - axis * axis.transpose();
-    A += M;
-    b += M * v.center_in_world();
-  }
-  return A.ldlt().solve(b);
-}
+constexpr double kBeyondField = 1.5;  // what a view sees at the object; details make up a whole
 
 // Half of what a view sees, at distance 1.
 double half_field(const View& v) {
@@ -50,9 +38,9 @@ PixelBox box_of(const EdgelMap& map) {
   return b;
 }
 
-// Voxels of a cube that at most one view in twenty puts outside its box of edgels.
+// Voxels of a cube that at most `most` of the views put outside their boxes of edgels.
 Eigen::AlignedBox3d carve(const std::vector<View>& views, const std::vector<PixelBox>& boxes,
-                          const Eigen::AlignedBox3d& cube, double margin_px) {
+                          const Eigen::AlignedBox3d& cube, double margin_px, double most) {
   Eigen::AlignedBox3d out;
   const Eigen::Vector3d cell = cube.sizes() / kGrid;
   int voters = 0;
@@ -63,7 +51,7 @@ Eigen::AlignedBox3d carve(const std::vector<View>& views, const std::vector<Pixe
         const Eigen::Vector3d p =
             cube.min() + cell.cwiseProduct(Eigen::Vector3d(i + .5, j + .5, k + .5));
         int misses = 0;
-        for (size_t v = 0; v < views.size() && 20 * misses <= voters; ++v) {
+        for (size_t v = 0; v < views.size() && misses <= most * voters; ++v) {
           const PixelBox& b = boxes[v];
           if (b.x0 > b.x1) continue;
           double z;
@@ -73,7 +61,7 @@ Eigen::AlignedBox3d carve(const std::vector<View>& views, const std::vector<Pixe
           misses += z <= 0 || q.x() < b.x0 - m || q.x() > b.x1 + m || q.y() < b.y0 - m ||
                     q.y() > b.y1 + m;
         }
-        if (20 * misses <= voters) {
+        if (misses <= most * voters) {
           out.extend(Eigen::Vector3d(p - cell));
           out.extend(Eigen::Vector3d(p + cell));
         }
@@ -95,6 +83,18 @@ Eigen::Matrix3Xf plane_normals(const View& view, const EdgelMap& map) {
   return normals;
 }
 
+Eigen::Vector3d meeting_point(const std::vector<View>& views) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Identity() * 1e-9;
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (const View& v : views) {
+    const Eigen::Vector3d axis = v.cam_from_world.rotation.row(2);
+    const Eigen::Matrix3d M = Eigen::Matrix3d::Identity() - axis * axis.transpose();
+    A += M;
+    b += M * v.center_in_world();
+  }
+  return A.ldlt().solve(b);
+}
+
 EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
   EdgeWorld world;
   world.views = std::move(views);
@@ -107,9 +107,15 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
     const double z = (v.cam_from_world * middle).z();
     if (z > 0) reach = std::max(reach, z * half_field(v));
   }
+  // Masks hold the object as a whole in nearly all views; without, views may be details of it.
+  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
+                                  [](const EdgelMap& m) { return !m.mask.empty(); });
+  const double most = masked ? 0.05 : 0.75;
+  if (!masked) reach *= kBeyondField;
   Eigen::AlignedBox3d cube(middle - Eigen::Vector3d::Constant(reach),
                            middle + Eigen::Vector3d::Constant(reach));
-  for (int pass = 0; pass < 2 && reach > 0; ++pass) cube = carve(world.views, boxes, cube, 2.0);
+  for (int pass = 0; pass < 2 && reach > 0; ++pass)
+    cube = carve(world.views, boxes, cube, 2.0, most);
   if (reach > 0) world.bounds = cube;
   std::vector<double> footprint;
   for (size_t i = 0; i < world.views.size(); ++i) {

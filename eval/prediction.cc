@@ -15,6 +15,7 @@
 #include "sketches/curve.h"
 #include "sketches/curve_chain.h"
 #include "sketches/io.h"
+#include "sketches/json_text.h"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -138,7 +139,7 @@ Prediction read_json(const std::string& path) {
   std::ifstream in(path);
   Prediction prediction;
   try {
-    const json document = json::parse(in);
+    const json document = parse_json<json>(in, path);
     if (!document.is_object()) throw InputError(path, "a JSON object", "another value");
     if (document.contains("strokes")) {
       in.clear();

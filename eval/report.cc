@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "eval/csv.h"
+
 using nlohmann::ordered_json;
 
 namespace sketchsplat {
@@ -130,13 +132,6 @@ void flatten(const ordered_json& object, const std::string& prefix, NamedNumbers
                         value.is_null() ? std::nan("") : value.template get<double>());
     }
   }
-}
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 using Cells = std::vector<std::pair<std::string, std::string>>;  // heading and what is below

@@ -4,13 +4,19 @@
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <map>
 #include <memory>
 
 #include "datasets/errors.h"
+#include "pipelines/batch/run.h"
 #include "pipelines/cli_help.h"
+#include "pipelines/completion.h"
+#include "pipelines/manual.h"
+#include "pipelines/version.h"
 
 namespace sketchsplat {
 namespace {
@@ -29,13 +35,15 @@ void register_fields(CLI::App* app, const std::vector<Field>& fields, Texts* tex
     }
     std::string flags = field.positional ? name : "--" + name;
     if (!field.short_name.empty()) flags = "-" + field.short_name + "," + flags;
-    if (field.several) {
+    if (field.several || field.value_optional) {
       CLI::Option* option = app->add_option_function<std::vector<std::string>>(
           flags, [=](const std::vector<std::string>& given) {
             std::string& all = (*texts)[name];
             for (const std::string& text : given) all += (all.empty() ? "" : "\n") + text;
+            if (field.value_optional && all.empty()) all = "-";
           });
       option->allow_extra_args(field.positional);  // --name takes one at a time
+      if (field.value_optional) option->expected(0, 1)->take_last();
       continue;
     }
     CLI::Option* option = app->add_option_function<std::string>(
@@ -100,8 +108,9 @@ Progress::Mode progress_mode(const CommonOptions& common) {
 // The parser of the whole program; its shape is the verbs'.
 struct Parser {
   CLI::App app;
-  Texts texts;
-  bool help = false, version = false, markdown = false;
+  Texts texts, common_texts;  // of the verb, of all verbs: they may share names
+  bool help = false, version = false, markdown = false, manual = false;
+  std::string completion;  // a shell
   std::vector<CLI::App*> subcommands;
 
   Parser(const std::vector<Verb>& verbs, const std::vector<Field>& common) {
@@ -109,8 +118,10 @@ struct Parser {
     app.add_flag("-h,--help", help);
     app.add_flag("--version", version);
     app.add_flag("--options-markdown", markdown);
+    app.add_flag("--man", manual);
+    app.add_option("--completion", completion);
     app.allow_extras();
-    register_fields(&app, common, &texts);
+    register_fields(&app, common, &common_texts);
     for (const Verb& verb : verbs) {
       CLI::App* sub = app.add_subcommand(verb.name);
       sub->set_help_flag();
@@ -136,9 +147,17 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
   const bool help_word = argc > 1 && std::string(argv[1]) == "help";
 
   if (parser.version) {
-    std::cout << "sketchsplat " << SKETCHSPLAT_VERSION << "\n";
+    std::cout << "sketchsplat " << program_version() << "\ncommit " << program_commit() << "\nwith "
+              << library_versions() << "\n";
   } else if (parser.markdown) {
     std::cout << options_markdown(verbs);
+  } else if (parser.manual) {
+    std::cout << manual_page(verbs, common_fields.list);
+  } else if (!parser.completion.empty()) {
+    const std::vector<std::string>& shells = completion_shells();
+    if (std::find(shells.begin(), shells.end(), parser.completion) == shells.end())
+      throw UsageError("--completion: expected bash, zsh or fish, got '" + parser.completion + "'");
+    std::cout << completion_script(parser.completion, verbs, common_fields.list);
   } else if ((parser.help || help_word) && verb) {
     std::cout << verb_help(*verb, common_fields.list);
   } else if ((parser.help && extras.empty()) || (help_word && extras.size() == 1)) {
@@ -154,20 +173,35 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
       refuse_extra(extras[0], known, verb->name);
     }
     check_required(*verb, parser.texts);
-    assign_texts(common_fields.list, parser.texts);
+    assign_texts(common_fields.list, parser.common_texts);
     assign_texts(verb->fields, parser.texts);
     if (common.threads > 0) omp_set_num_threads(common.threads);
     Progress progress(progress_mode(common), common.verbose && !common.quiet);
-    verb->run(common, &progress);
+    progress.use_color(Progress::stderr_has_color());
+    if (!common.log.empty()) progress.log_to(common.log);
+    try {
+      verb->run(common, &progress);
+    } catch (const std::exception& e) {
+      progress.log(e.what());
+      throw;
+    }
+    progress.repeat_warnings();
   }
 }
 
 int complain(ExitStatus status, const std::string& text) {
-  std::fprintf(stderr, "sketchsplat: %s\n", text.c_str());
+  const bool color = Progress::stderr_has_color();
+  std::fprintf(stderr, color ? "\033[31msketchsplat:\033[0m %s\n" : "sketchsplat: %s\n",
+               text.c_str());
   return status;
 }
 
 }  // namespace
+
+std::vector<Verb> all_verbs() {
+  return {reconstruct_verb(), batch_verb(),   detect_verb(),     evaluate_verb(),
+          export_verb(),      inspect_verb(), synthesize_verb(), bench_verb()};
+}
 
 int run_command_line(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
   try {
@@ -185,6 +219,17 @@ int run_command_line(int argc, const char* const* argv, const std::vector<Verb>&
     return complain(kTooLittle, e.what());
   } catch (const OutputError& e) {
     return complain(kNoOutput, e.what());
+  } catch (const SomeFailedError& e) {
+    std::cout.flush();
+    return complain(kSomeFailed, e.what());
+  } catch (const NotAllInError& e) {
+    std::cout.flush();
+    return complain(kNotAllIn, e.what());
+  } catch (const Interrupted& e) {
+    complain(kDefect, e.what());
+    std::signal(e.number, SIG_DFL);  // whoever waits for us shall know
+    std::raise(e.number);
+    return 128 + e.number;
   } catch (const std::bad_alloc&) {
     return complain(kDefect, "out of memory");
   } catch (const std::exception& e) {

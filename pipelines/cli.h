@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,18 @@ enum ExitStatus {
   kBadInput = 3,
   kTooLittle = 4,
   kNoOutput = 5,
+  kSomeFailed = 6,
+  kNotAllIn = 7,
+};
+
+/// The verb did its work, and what it looked at is not as it should be; one sentence. Exit status 7.
+struct NotAllInError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Some scenes of a batch are not done; one sentence with their names. Exit status 6.
+struct SomeFailedError : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// One word after the program's name. `fields` point into storage that `run` keeps alive.
@@ -41,8 +54,11 @@ Verb reconstruct_verb();
 Verb detect_verb();
 Verb evaluate_verb();
 Verb export_verb();
+Verb inspect_verb();
 Verb synthesize_verb();
 Verb bench_verb();
+Verb batch_verb();
+std::vector<Verb> all_verbs();
 
 /// The file of the plug-in that makes synthetic scenes.
 std::string synthesis_plugin_path();

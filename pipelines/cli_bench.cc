@@ -99,24 +99,27 @@ void write_axis_charts(const std::vector<Result>& results, const std::string& fo
   }
 }
 
-void report_axes(const Suite& suite, const std::vector<BenchRow>& rows, const std::string& out) {
+std::string report_axes(const Suite& suite, const std::vector<BenchRow>& rows,
+                        const std::string& out) {
   const std::vector<AxisResult> limits = axis_results(suite, rows);
   const std::vector<GrowthResult> growth = growth_results(suite, rows);
+  std::string tables;
   if (!limits.empty()) {
     write_text(out + "/limits.md", limits_markdown(limits));
     write_text(out + "/limits.csv", limits_csv(limits));
     write_axis_charts(limits, out, axis_chart);
-    std::cout << limits_markdown(limits);
+    tables += limits_markdown(limits);
   }
   if (!growth.empty()) {
     write_text(out + "/growth.md", growth_markdown(growth));
     write_text(out + "/growth.csv", growth_csv(growth));
     write_axis_charts(growth, out, growth_chart);
-    std::cout << growth_markdown(growth);
+    tables += growth_markdown(growth);
   }
+  return tables;
 }
 
-void report_scenes(std::vector<BenchRow> rows, const std::string& out, bool ablation) {
+std::string report_scenes(std::vector<BenchRow> rows, const std::string& out, bool ablation) {
   write_chart(accuracy_chart(rows), out + "/chart");
   const std::vector<BenchRow> means = mean_rows(rows);
   rows.insert(rows.end(), means.begin(), means.end());
@@ -137,7 +140,7 @@ void report_scenes(std::vector<BenchRow> rows, const std::string& out, bool abla
                                           "total_per_decode",
                                           "peak_mb"};
   columns.insert(columns.end(), rest.begin(), rest.end());
-  std::cout << bench_table(rows, columns);
+  return bench_table(rows, columns);
 }
 
 void run_bench_verb(const BenchArguments& arguments, const CommonOptions& common,
@@ -150,10 +153,10 @@ void run_bench_verb(const BenchArguments& arguments, const CommonOptions& common
   run.scenes = arguments.scene_folder;
   run.threads = common.threads;
   const std::vector<BenchRow> rows = run_suite(run, progress);
-  if (run.suite.axes.empty())
-    report_scenes(rows, run.out, arguments.ablation);
-  else
-    report_axes(run.suite, rows, run.out);
+  const bool scenes = run.suite.axes.empty();
+  const std::string tables = scenes ? report_scenes(rows, run.out, arguments.ablation)
+                                    : report_axes(run.suite, rows, run.out);
+  std::cout << (common.json ? bench_json(rows, run.suite.name) : tables);
 }
 
 }  // namespace

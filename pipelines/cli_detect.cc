@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "datasets/errors.h"
 #include "datasets/geometry_maps.h"
@@ -11,10 +13,11 @@
 #include "edges/undistort.h"
 #include "eval/edge_maps.h"
 #include "eval/map_errors.h"
-#include "pipelines/geometry_files.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/detectors.h"
+#include "pipelines/geometry_files.h"
+#include "pipelines/print_json.h"
 
 namespace sketchsplat {
 namespace {
@@ -98,25 +101,80 @@ std::vector<ViewScore> write_maps(const Scene& scene, const Detector& detector,
   return scores;
 }
 
-void print_map_errors(const std::vector<ViewScore>& scores) {
+// Of the views that have them; `maps` says how many these are.
+MapErrors mean_map_errors(const std::vector<ViewScore>& scores, int* maps) {
   MapErrors sum;
-  int maps = 0;
+  *maps = 0;
   for (const ViewScore& s : scores) {
     if (!s.has_maps) continue;
-    ++maps;
+    ++*maps;
     sum.normal_deg += s.maps.normal_deg, sum.depth_px += s.maps.depth_px;
     sum.covered += s.maps.covered;
   }
-  if (maps == 0) return;
+  const double n = std::max(1, *maps);
+  sum.normal_deg /= n, sum.depth_px /= n, sum.covered /= n;
+  return sum;
+}
+
+// What --score tells.
+void tell_scores(const EdgeMapScore& mean, int maps, const std::vector<ViewScore>& scores) {
   char line[160];
+  std::snprintf(
+      line, sizeof line,
+      "within %.1f px, mean of %d views: precision %.1f, recall %.1f, F %.1f, rms %.3f px\n",
+      kTolerance, maps, 100 * mean.precision, 100 * mean.recall, 100 * mean.f, mean.rms_px);
+  std::cout << line;
+  int views = 0;
+  const MapErrors errors = mean_map_errors(scores, &views);
+  if (views == 0) return;
   std::snprintf(line, sizeof line,
                 "mean of %d views: normals %.2f deg, depth %.2f pixel footprints (median), "
                 "covered %.1f %%\n",
-                maps, sum.normal_deg / maps, sum.depth_px / maps, 100 * sum.covered / maps);
+                views, errors.normal_deg, errors.depth_px, 100 * errors.covered);
   std::cout << line;
 }
 
-void run_detect(const DetectArguments& arguments, Progress* progress) {
+nlohmann::ordered_json json_of_scores(const EdgeMapScore& mean,
+                                      const std::vector<ViewScore>& scores) {
+  nlohmann::ordered_json json = {{"tolerance_px", kTolerance},
+                                 {"precision", 100 * mean.precision},
+                                 {"recall", 100 * mean.recall},
+                                 {"f", 100 * mean.f},
+                                 {"rms_px", mean.rms_px}};
+  int views = 0;
+  const MapErrors errors = mean_map_errors(scores, &views);
+  if (views > 0)
+    json["geometry"] = {{"views", views},
+                        {"normal_deg", errors.normal_deg},
+                        {"depth_footprints", errors.depth_px},
+                        {"covered", 100 * errors.covered}};
+  return json;
+}
+
+// What was written, and what it is worth.
+void tell(const std::vector<Detection>& found, const std::vector<ViewScore>& scores,
+          const DetectArguments& arguments, bool json) {
+  int maps = 0;
+  EdgeMapScore mean;
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (!found[i].complaint.empty()) continue;
+    ++maps;
+    const EdgeMapScore& s = scores[i].edges;
+    mean.precision += s.precision, mean.recall += s.recall, mean.f += s.f, mean.rms_px += s.rms_px;
+  }
+  const double n = std::max(1, maps);
+  mean.precision /= n, mean.recall /= n, mean.f /= n, mean.rms_px /= n;
+  if (json) {
+    nlohmann::ordered_json out = {{"folder", map_folder(arguments)}, {"maps", maps}};
+    if (arguments.score) out["score"] = json_of_scores(mean, scores);
+    print_json(out);
+    return;
+  }
+  std::cout << map_folder(arguments) << ": " << maps << " edge maps\n";
+  if (arguments.score) tell_scores(mean, maps, scores);
+}
+
+void run_detect(const DetectArguments& arguments, bool json, Progress* progress) {
   Scene scene = open_scene(arguments.scene, arguments.format);
   if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
@@ -128,24 +186,7 @@ void run_detect(const DetectArguments& arguments, Progress* progress) {
   const std::string surfels = detector->surfels();
   if (arguments.geometry && !surfels.empty())
     write_atomically(arguments.out + "/surfels.ply", [&](std::ostream& file) { file << surfels; });
-  int maps = 0;
-  EdgeMapScore sum;
-  for (size_t i = 0; i < found.size(); ++i) {
-    if (!found[i].complaint.empty()) continue;
-    ++maps;
-    const EdgeMapScore& s = scores[i].edges;
-    sum.precision += s.precision, sum.recall += s.recall, sum.f += s.f, sum.rms_px += s.rms_px;
-  }
-  std::cout << map_folder(arguments) << ": " << maps << " edge maps\n";
-  if (!arguments.score) return;
-  char line[160];
-  std::snprintf(
-      line, sizeof line,
-      "within %.1f px, mean of %d views: precision %.1f, recall %.1f, F %.1f, rms %.3f px\n",
-      kTolerance, maps, 100 * sum.precision / maps, 100 * sum.recall / maps, 100 * sum.f / maps,
-      sum.rms_px / maps);
-  std::cout << line;
-  print_map_errors(scores);
+  tell(found, scores, arguments, json);
 }
 
 }  // namespace
@@ -175,8 +216,8 @@ Verb detect_verb() {
   verb.examples = {"sketchsplat detect scenes/part --out out/part",
                    "sketchsplat detect scenes/part --out out/part --detector geometry --score"};
   verb.fields = f.list;
-  verb.run = [arguments](const CommonOptions&, Progress* progress) {
-    run_detect(*arguments, progress);
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    run_detect(*arguments, common.json, progress);
   };
   return verb;
 }

@@ -24,6 +24,8 @@ struct EvaluateArguments {
   EvaluateOptions options;
 };
 
+bool on_stdout(const EvaluateArguments& arguments) { return arguments.json == "-"; }
+
 void write_text(const std::string& path, const std::string& text) {
   write_atomically(path, [&](std::ostream& out) { out << text; });
 }
@@ -74,7 +76,7 @@ void check_usage(const EvaluateArguments& arguments) {
 
 void write_files(const EvaluateArguments& arguments, const std::string& json,
                  const std::vector<SceneEvaluation>& scenes) {
-  if (!arguments.json.empty()) write_text(arguments.json, json);
+  if (!arguments.json.empty() && !on_stdout(arguments)) write_text(arguments.json, json);
   if (arguments.out.empty()) return;
   write_text(arguments.out + "/evaluation.json", json);
   write_text(arguments.out + "/evaluation.csv", scenes_to_csv(scenes));
@@ -90,7 +92,10 @@ void evaluate_one(const EvaluateArguments& arguments, Progress* progress) {
   if (arguments.overlays > 0) {
     write_worst(scene.evaluation, arguments.truth, arguments.out, arguments.overlays, progress);
   }
-  std::cout << to_table(scene.evaluation) << worst_curves(scene.evaluation);
+  if (on_stdout(arguments))
+    std::cout << to_json(scene.evaluation);
+  else
+    std::cout << to_table(scene.evaluation) << worst_curves(scene.evaluation);
 }
 
 void evaluate_folder(const EvaluateArguments& arguments, Progress* progress) {
@@ -109,7 +114,7 @@ void evaluate_folder(const EvaluateArguments& arguments, Progress* progress) {
     write_worst(results.back().evaluation, scene.truth, out, arguments.overlays, progress);
   }
   write_files(arguments, scenes_to_json(results), results);
-  std::cout << scenes_to_table(results);
+  std::cout << (on_stdout(arguments) ? scenes_to_json(results) : scenes_to_table(results));
 }
 
 void run_evaluate(const EvaluateArguments& arguments, Progress* progress) {
@@ -138,7 +143,9 @@ Verb evaluate_verb() {
            "Whose way of sampling predictions");
   f.choose("missing", &arguments->missing, {"zero", "skip"},
            "What a scene without a result counts, of several");
-  f.add("json", &arguments->json, "FILE", "Write all numbers to this file, too");
+  f.add("json", &arguments->json, "FILE",
+        "Write all numbers to this file, too; without FILE to standard output, nothing else")
+      .value_optional = true;
   f.add("out", &arguments->out, "DIR", "Write evaluation.json, evaluation.csv, strokes.csv and overlays there");
   f.add("overlays", &arguments->overlays, "images", 0, 100,
         "Draw missed edges (red) and wrong strokes (blue) over so many images");
@@ -150,7 +157,8 @@ Verb evaluate_verb() {
                    "sketchsplat evaluate --pred out/part/sketch.obj --gt scenes/part "
                    "--protocol emap --json numbers.json"};
   verb.fields = f.list;
-  verb.run = [arguments](const CommonOptions&, Progress* progress) {
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    if (common.json) arguments->json = "-";
     run_evaluate(*arguments, progress);
   };
   return verb;

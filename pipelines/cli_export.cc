@@ -14,8 +14,11 @@
 #include "pipelines/cli.h"
 #include "pipelines/confidence.h"
 #include "pipelines/outputs.h"
+#include "pipelines/print_json.h"
 #include "pipelines/report.h"
+#include "pipelines/sketch_input.h"
 #include "sketches/io.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace {
@@ -44,23 +47,10 @@ std::string format_of(const std::string& path) {
   return "";
 }
 
-// Accepts the folder that `reconstruct` wrote, too.
-std::string sketch_file(const std::string& given) {
-  std::error_code none;
-  return std::filesystem::is_directory(given, none) ? given + "/sketch.json" : given;
-}
-
-Sketch read_sketch(const std::string& given) {
-  const std::string path = sketch_file(given);
-  std::ifstream in(path);
-  if (!in) throw InputError(path, "a sketch.json", "no file that can be read");
-  return read_sketch_json(in, path);
-}
-
 // What sketch.json holds beside the sketch: the options, the names of the views.
 std::string other_members(const std::string& path, bool without_proposed) {
   std::ifstream in(path);
-  nlohmann::ordered_json j = nlohmann::ordered_json::parse(in);
+  nlohmann::ordered_json j = parse_json<nlohmann::ordered_json>(in, path);
   for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
   if (without_proposed) j.erase("proposed");
   return j.dump();
@@ -70,7 +60,7 @@ std::string other_members(const std::string& path, bool without_proposed) {
 Sketch with_proposed(Sketch sketch, const std::string& given) {
   const std::string path = sketch_file(given);
   std::ifstream in(path);
-  const nlohmann::ordered_json j = nlohmann::ordered_json::parse(in);
+  const auto j = parse_json<nlohmann::ordered_json>(in, path);
   if (!j.contains("proposed")) return sketch;
   std::istringstream text(j["proposed"].dump());
   const Sketch proposed = read_sketch_json(text, path + ": proposed");
@@ -109,7 +99,8 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
   } else if (format == "parametric") {
     write_parametric_edges(out, sketch);
   } else {
-    write_sketch_json(out, sketch, other_members(sketch_file(arguments.sketch), arguments.proposed));
+    write_sketch_json(out, sketch,
+                      other_members(sketch_file(arguments.sketch), arguments.proposed));
   }
 }
 
@@ -130,13 +121,10 @@ Sketch confident(const Sketch& sketch, double least, const std::string& path, Pr
                                  [](const Evidence& e) { return !std::isnan(e.confidence); });
   if (!known && sketch.size() > 0)
     progress->warn(path + " knows no confidence: --min-confidence leaves nothing out");
-  const Sketch kept = keep_confident(sketch, least);
-  std::cout << kept.size() << " curves, " << sketch.size() - kept.size()
-            << " less probable ones left out\n";
-  return kept;
+  return keep_confident(sketch, least);
 }
 
-void run_export(const ExportArguments& arguments, Progress* progress) {
+void run_export(const ExportArguments& arguments, bool json, Progress* progress) {
   const std::string format = arguments.format.empty() ? format_of(arguments.out) : arguments.format;
   if (format.empty())
     throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
@@ -146,6 +134,14 @@ void run_export(const ExportArguments& arguments, Progress* progress) {
   const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
   write_atomically(arguments.out,
                    [&](std::ostream& out) { write(out, sketch, arguments, format); });
+  const int left_out = all.size() - sketch.size();
+  if (json)
+    print_json({{"file", arguments.out},
+                {"format", format},
+                {"curves", sketch.size()},
+                {"left_out", left_out}});
+  else if (arguments.min_confidence > 0)
+    std::cout << sketch.size() << " curves, " << left_out << " less probable ones left out\n";
 }
 
 }  // namespace
@@ -177,8 +173,8 @@ Verb export_verb() {
                    "sketchsplat export out/part -o part.dxf --scale 50",
                    "sketchsplat export out/part -o part.obj --deflection 1e-5"};
   verb.fields = f.list;
-  verb.run = [arguments](const CommonOptions&, Progress* progress) {
-    run_export(*arguments, progress);
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    run_export(*arguments, common.json, progress);
   };
   return verb;
 }

@@ -25,11 +25,8 @@ std::string flag_text(const Field& field) {
   if (field.positional) return field.unit;
   if (std::holds_alternative<bool*>(field.value))
     return (field.initial == "true" ? "--[no-]" : "--") + field.name;
-  return "--" + field.name + " " + placeholder(field);
-}
-
-std::string with_short_name(const Field& field) {
-  return (field.short_name.empty() ? "" : "-" + field.short_name + ", ") + flag_text(field);
+  const std::string value = placeholder(field);
+  return "--" + field.name + " " + (field.value_optional ? "[" + value + "]" : value);
 }
 
 // One option: flag, help, facts, broken into lines; the facts are not torn apart.
@@ -91,6 +88,10 @@ size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
+std::string with_short_name(const Field& field) {
+  return (field.short_name.empty() ? "" : "-" + field.short_name + ", ") + flag_text(field);
+}
+
 std::string usage_line(const Verb& verb) {
   std::string line = "sketchsplat " + verb.name;
   for (const Field& field : verb.fields) {
@@ -117,10 +118,13 @@ std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field
   text += "  (sketchsplat VERB --help shows the options of a verb)\n";
   text += option_groups(common);
   text += "  -h, --help                  Show this, or the help of a verb\n";
-  text += "  --version                   Show the version\n";
+  text += "  --version                   Show the version, the commit and the libraries\n";
+  text += "  --man                       Show the manual page, for man -l -\n";
+  text += "  --completion SHELL          Show what completes words in bash, zsh or fish\n";
   text +=
       "\nExit status: 0 done, 2 wrong usage, 3 unusable input, 4 too little in the scene,\n"
-      "5 output cannot be written, 1 a defect of the program.\n";
+      "5 output cannot be written, 6 a batch of which some scenes failed, 7 inspected and not all in,\n"
+      "1 a defect of the program.\n";
   return text;
 }
 

@@ -17,6 +17,9 @@ std::string verb_help(const Verb& verb, const std::vector<Field>& common);
 /// What the verb needs, as a pattern: "reconstruct SCENE --out DIR [options]".
 std::string usage_line(const Verb& verb);
 
+/// An option with what stands behind it: "-o, --out DIR".
+std::string with_short_name(const Field& field);
+
 /// The candidate that is nearest to a mistyped word, or nothing if none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
 

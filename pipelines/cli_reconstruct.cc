@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: MIT
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "datasets/errors.h"
+#include "datasets/frame.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
+#include "pipelines/estimate.h"
 #include "pipelines/find_cameras.h"
 #include "pipelines/outputs.h"
+#include "pipelines/print_json.h"
 #include "pipelines/reconstruct.h"
 
 namespace sketchsplat {
@@ -14,11 +25,85 @@ namespace {
 struct ReconstructArguments {
   std::string scene, out;
   std::string format;  // empty: found out
+  bool dry_run = false;
   std::string images;  // photographs without cameras, instead of a scene
   std::string masks;
   ReconstructOptions method;
   OutputOptions output;
 };
+
+// How many views the detector finds no map for.
+int missing_maps(const Scene& scene, const std::string& detector) {
+  const std::string prefix = "maps:";
+  if (detector.rfind(prefix, 0) != 0) return 0;
+  return int(std::count_if(scene.views.begin(), scene.views.end(), [&](const View& view) {
+    return edge_map_path(scene, view, detector.substr(prefix.size())).empty();
+  }));
+}
+
+// Photographs of which only the size is known, as a scene without cameras.
+Scene photographs_in(const std::string& folder) {
+  Scene scene;
+  scene.folder = folder;
+  scene.format = "photographs without cameras";
+  for (const std::string& name : list_images(folder, true)) {
+    View view;
+    view.image_path = folder + "/" + name;
+    try {
+      const ImageSize size = read_image_size(view.image_path);
+      view.camera.width = size.width;
+      view.camera.height = size.height;
+      scene.views.push_back(view);
+    } catch (const InputError& e) {
+      scene.warnings.push_back(e.what());
+    }
+  }
+  if (scene.views.empty()) throw InputError(folder, "photographs", "none");
+  return scene;
+}
+
+// What would be read, how long it takes, and how much memory.
+void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool json) {
+  double pixels = 0;
+  for (const View& view : scene.views) pixels += double(view.camera.width) * view.camera.height;
+  const bool photographs = !arguments.images.empty();
+  const int views = int(scene.views.size()), threads = omp_get_max_threads();
+  const Load load = expected_load(views, pixels, arguments.method, threads);
+  const int missing = missing_maps(scene, arguments.method.detector);
+  if (json) {
+    print_json({{"scene", scene.folder},
+                {"format", scene.format},
+                {"views", views},
+                {"pixels", pixels},
+                {"left_out", scene.warnings.size()},
+                {"missing_maps", missing},
+                {"threads", threads},
+                {"expected_seconds", load.seconds},
+                {"expected_mb", load.memory_mb}});
+    return;
+  }
+  std::cout << scene.folder << ": " << scene.format << ", " << views << " views, "
+            << std::llround(pixels / 1e5) / 10.0 << " million pixels";
+  if (!scene.warnings.empty()) std::cout << ", " << scene.warnings.size() << " frames left out";
+  if (missing > 0) std::cout << ", " << missing << " edge maps missing";
+  std::cout << "\nroughly " << rough_duration(load.seconds) << " with " << threads
+            << (threads == 1 ? " thread" : " threads")
+            << (photographs ? " after COLMAP, which takes far longer, " : ", ") << std::lround(load.memory_mb)
+            << " MB, into " << arguments.out << "\n";
+}
+
+void tell_result(const Sketch& sketch, const ReconstructArguments& arguments, bool json) {
+  if (json) {
+    std::ifstream in(arguments.out + "/report.json");
+    nlohmann::ordered_json result = {{"out", arguments.out}};
+    result.update(nlohmann::ordered_json::parse(in));
+    print_json(result);
+    return;
+  }
+  std::cout << arguments.out << "/sketch.step: " << sketch.size() << " curves, "
+            << sketch.nodes.cols() << " junctions\n"
+            << arguments.out << "/report.html: to look at\n";
+}
 
 // The scene, or the photographs with the cameras that COLMAP finds.
 Scene open_views(const ReconstructArguments& arguments, const CommonOptions& common,
@@ -28,8 +113,12 @@ Scene open_views(const ReconstructArguments& arguments, const CommonOptions& com
     scene = open_scene(arguments.scene, arguments.format);
   } else {
     prepare_output_folder(arguments.out);
+    std::error_code none;
+    if (std::filesystem::equivalent(arguments.images, arguments.out, none))
+      throw UsageError("--out must be another folder than --images: it gets pictures, too");
     const std::string folder = arguments.out + "/colmap";
-    find_cameras(arguments.images, folder, common.threads, report, progress);
+    find_cameras(arguments.images, {arguments.out, arguments.masks}, folder, common.threads, report,
+                 progress);
     scene = open_scene(folder, "colmap");
     scene.folder = arguments.images;  // that is how users and files call it
   }
@@ -43,6 +132,12 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   arguments.method.seed = common.seed;
   if (!arguments.scene.empty() && !arguments.images.empty())
     throw UsageError("reconstruct takes SCENE or --images DIR, not both");
+  if (arguments.dry_run) {
+    tell_plan(arguments.images.empty() ? open_views(arguments, common, nullptr, progress)
+                                       : photographs_in(arguments.images),
+              arguments, common.json);
+    return;
+  }
   RunReport before;
   const Scene scene = open_views(arguments, common, &before, progress);
   prepare_output_folder(arguments.out);
@@ -52,9 +147,7 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   report.stages.insert(report.stages.begin(), before.stages.begin(), before.stages.end());
   report.warnings.insert(report.warnings.begin(), before.warnings.begin(), before.warnings.end());
   write_outputs(arguments.out, result, scene, arguments.method, arguments.output, progress);
-  std::cout << arguments.out << "/sketch.step: " << result.sketch.size() << " curves, "
-            << result.sketch.nodes.cols() << " junctions\n"
-            << arguments.out << "/report.html: to look at\n";
+  tell_result(result.sketch, arguments, common.json);
 }
 
 }  // namespace
@@ -71,6 +164,8 @@ Verb reconstruct_verb() {
   out.short_name = "o";
   f.choose("format", &arguments->format, scene_formats(),
            "What the folder is; if left out, its files decide");
+  f.add("dry-run", &arguments->dry_run,
+        "Say what would be read, how long it would take, and how much memory");
   f.add("images", &arguments->images, "DIR",
         "Photographs without cameras: COLMAP finds them first, into colmap/ of --out");
   f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");

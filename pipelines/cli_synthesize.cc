@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include <dlfcn.h>
-
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "datasets/errors.h"
 #include "datasets/synthetic/outputs.h"
 #include "datasets/synthetic/part_table.h"
-#include "datasets/synthetic/plugin.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
-#include "pipelines/plugin_path.h"
+#include "pipelines/print_json.h"
 #include "pipelines/run_report.h"
+#include "pipelines/synthesis_plugin.h"
 
 namespace sketchsplat {
 namespace {
@@ -23,16 +22,6 @@ struct SynthesizeArguments {
   bool list_parts = false;
   SynthesizeOptions options;
 };
-
-const SynthesisPlugin& load_plugin() {
-  const std::string path = synthesis_plugin_path();
-  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library)
-    throw std::runtime_error(std::string(kSynthesisPluginFile) + " cannot be loaded: " +
-                             ::dlerror());
-  using Get = const SynthesisPlugin*();
-  return *reinterpret_cast<Get*>(::dlsym(library, kSynthesisPluginSymbol))();
-}
 
 // The user's NAME=VALUE lines for this part.
 PartValues part_values(const std::string& part, const std::string& lines) {
@@ -57,23 +46,40 @@ PartValues part_values(const std::string& part, const std::string& lines) {
   return values;
 }
 
+nlohmann::ordered_json json_of_parts() {
+  nlohmann::ordered_json parts = nlohmann::ordered_json::object();
+  for (const PartSpec& spec : part_specs()) {
+    parts[spec.name] = nlohmann::ordered_json::object();
+    for (const PartParameter& p : spec.parameters)
+      parts[spec.name][p.name] = {
+          {"unit", p.unit}, {"drawn", {p.low, p.high}}, {"allowed", {p.least, p.most}}};
+  }
+  return parts;
+}
+
 void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
                     Progress* progress) {
   if (arguments.list_parts) {
-    std::cout << part_listing(part_specs());
+    if (common.json)
+      print_json(json_of_parts());
+    else
+      std::cout << part_listing(part_specs());
     return;
   }
   SynthesizeOptions& options = arguments.options;
   options.seed = std::uint64_t(common.seed);
   if (options.rig.focal > 0 && options.rig.object_size > 0)
     throw UsageError("--object-size sets the focal length: leave --focal out");
+  if (options.rig.distance > 0 && options.rig.distance < 1.6)
+    throw UsageError("--distance: expected 1.6 or more, or 0, got " +
+                     std::to_string(options.rig.distance));
   try {
     parse_outputs(options.outputs);
   } catch (const InputError& e) {
     throw UsageError(std::string("--") + e.what());
   }
   options.parameters = part_values(options.part, arguments.parameters);
-  const SynthesisPlugin& plugin = load_plugin();
+  const SynthesisPlugin& plugin = synthesis_plugin();
   const std::unique_ptr<SyntheticScene, void (*)(SyntheticScene*)> made(
       plugin.synthesize(arguments.options), plugin.release);
   const SyntheticScene& scene = *made;
@@ -83,20 +89,31 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
     plugin.write_scene(scene, arguments.out);
     stage.result(std::to_string(scene.views.size()) + " views");
   }
-  std::cout << arguments.out << ": " << scene.views.size() << " views, "
-            << scene.truth.curves.size() << " true edges\n";
+  if (common.json)
+    print_json({{"scene", arguments.out},
+                {"views", scene.views.size()},
+                {"true_edges", scene.truth.curves.size()}});
+  else
+    std::cout << arguments.out << ": " << scene.views.size() << " views, "
+              << scene.truth.curves.size() << " true edges\n";
 }
 
 void list_camera_fields(SynthesizeOptions* o, Fields* f) {
   f->group("Cameras");
-  f->choose("rig", &o->rig.kind, {"sphere", "upper", "ring", "random", "one-sided"},
-            "Where the cameras stand");
+  f->choose("rig", &o->rig.kind,
+            {"sphere", "upper", "ring", "random", "one-sided", "hemisphere", "auto"},
+            "Where the cameras stand; auto: on a hemisphere with --style photo, else a sphere");
   f->add("views", &o->rig.views, "cameras", 1, 100000, "Number of pictures");
-  f->add("resolution", &o->rig.resolution, "px", 16, 8192, "Width and height of the pictures");
-  f->add("focal", &o->rig.focal, "px", 0, 1e6, "Focal length; 0 is that of ABC-NEF");
+  f->add("resolution", &o->rig.resolution, "px", 16, 8192, "Width of the pictures");
+  f->add("height", &o->rig.height, "px", 0, 8192,
+         "Height of the pictures; 0 is the width, with --style photo three quarters of it");
+  f->add("focal", &o->rig.focal, "px", 0, 1e6,
+         "Focal length; 0 is that of ABC-NEF, with --style photo 1.15 widths");
   f->add("object-size", &o->rig.object_size, "image widths", 0, 10,
          "Of the longest side at --distance, instead of --focal; 0 leaves it to that");
-  f->add("distance", &o->rig.distance, "extents", 1.6, 1000, "Of the cameras from the origin");
+  f->add("distance", &o->rig.distance, "extents", 0, 1000,
+         "Of the cameras from the origin, of a hemisphere from the object; 0 is 4, with --style "
+         "photo 2.6");
   f->add("elevation", &o->rig.elevation_deg, "deg", -85, 85, "Of the cameras of a ring");
   f->add("spread", &o->rig.spread_deg, "deg", 1, 180, "Half-angle of the cone of a one-sided rig");
 }
@@ -104,8 +121,9 @@ void list_camera_fields(SynthesizeOptions* o, Fields* f) {
 void list_picture_fields(SynthesizeOptions* o, Fields* f) {
   RenderOptions& r = o->render;
   f->group("Pictures");
-  f->choose("style", &r.style, {"plain", "textured", "speckled", "dark", "glossy", "shadowed"},
-            "Surface and light of the object");
+  f->choose("style", &r.style,
+            {"plain", "textured", "speckled", "dark", "glossy", "shadowed", "photo"},
+            "Surface and light of the object; photo: JPEG photographs of it on a table in a room");
   f->add("texture-strength", &r.texture_strength, "", 0, 1, "Contrast of what textured and speckled print");
   f->add("even-light", &r.even_light, "share", 0, 1,
          "Of the light comes evenly from all sides, as in a light tent: faces get one shade");
@@ -113,12 +131,14 @@ void list_picture_fields(SynthesizeOptions* o, Fields* f) {
   f->add("blur", &r.blur, "px", 0, 20, "Standard deviation of the blur");
   f->add("exposure", &r.exposure, "stops", 0, 2, "Standard deviation of the exposure");
   f->add("jpeg", &r.jpeg, "quality", 0, 100,
-         "Compress and decode the pictures before they are written; 0 does not");
+         "Compress and decode the pictures before they are written; 0 does not; of photographs the "
+         "quality of their files, 0 is 92");
   f->add("clutter", &r.clutter, "Put a room full of things behind the object; no alpha then");
   f->add("transparent", &r.transparent, "Leave the background out (alpha)");
   f->add("background", &r.background, "", 0, 1, "Grey of the background if it is not left out");
   f->add("outputs", &o->outputs, "NAMES",
-         "Beside the pictures: all, none or some of mask,depth,normal,edges");
+         "Beside the pictures: all, none or some of mask,depth,normal,edges; not with --style "
+         "photo");
   f->group("Damage");
   DegradeOptions& d = o->degrade;
   f->add("pose-noise", &d.pose_noise_px, "px", 0, 100,
@@ -127,6 +147,23 @@ void list_picture_fields(SynthesizeOptions* o, Fields* f) {
          "How much the focal length as stated is too large");
   f->add("missing", &d.missing, "share", 0, 1, "Of the frames have no image file");
   f->add("truncated", &d.truncated, "share", 0, 1, "Of the frames have half an image file");
+}
+
+void list_photo_fields(SynthesizeOptions* o, Fields* f) {
+  f->group("Photographs (--style photo)");
+  PhotoOptions& p = o->photo;
+  f->choose("surface", &p.surface, {"painted", "metal", "printed", "speckled"},
+            "What the part is made of; printed: in layers");
+  f->choose("up", &p.up, {"z", "-z", "y", "-y", "x", "-x"}, "Which axis of the part looks up");
+  f->add("distortion", &p.distortion, "", 0, 3, "Strength of the lens; 0 is a pinhole, 1 usual");
+  f->add("state-lens", &p.state_lens, "Write the lens into the model, not a pinhole in its place");
+  f->add("masks", &p.masks, "Write masks of the part");
+  f->add("tag", &p.tag, "id", -1, 586, "AprilTag 36h11 that lies on the table; -1: none");
+  f->add("tag-size", &p.tag_size, "world units", 0, 1e9,
+         "Edge of the tag's black square; 0 is a quarter of the extent");
+  f->add("pose-error", &p.pose_error_px, "px", 0, 50,
+         "RMS shift of the part's edges by the model's cameras, wrong as COLMAP's: alike from "
+         "neighbour to neighbour, and in focal length, principal point and lens");
 }
 
 void list_object_fields(SynthesizeOptions* o, Fields* f) {
@@ -148,10 +185,6 @@ void list_part_fields(SynthesizeArguments* a, Fields* f) {
 
 }  // namespace
 
-std::string synthesis_plugin_path() {
-  return plugin_path(kSynthesisPluginFile, SKETCHSPLAT_SYNTHESIS_FOLDER);
-}
-
 Verb synthesize_verb() {
   const auto arguments = std::make_shared<SynthesizeArguments>();
   Fields f;
@@ -164,6 +197,7 @@ Verb synthesize_verb() {
   out.short_name = "o";
   list_camera_fields(&arguments->options, &f);
   list_picture_fields(&arguments->options, &f);
+  list_photo_fields(&arguments->options, &f);
   list_object_fields(&arguments->options, &f);
   list_part_fields(arguments.get(), &f);
   Verb verb;
@@ -174,7 +208,8 @@ Verb synthesize_verb() {
       "sketchsplat synthesize rib-plate --out scenes/narrow --param gap=0.01",
       "sketchsplat synthesize bracket.step --out scenes/bracket --views 30 --noise 3",
       "sketchsplat synthesize bracket.stl --out scenes/bracket --crease-angle 40",
-      "sketchsplat synthesize flange --out scenes/hard --style glossy --clutter --jpeg 80"};
+      "sketchsplat synthesize flange --out scenes/hard --style glossy --clutter --jpeg 80",
+      "sketchsplat synthesize flange --out scenes/photos --style photo --views 30 --tag 0"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {
     run_synthesize(*arguments, common, progress);

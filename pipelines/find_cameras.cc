@@ -32,7 +32,19 @@ struct Photographs {
   std::string list;  // a line for each: size of the file, its time, name
 };
 
-Photographs list_photographs(const std::string& folder, RunReport* report, Progress* progress) {
+// Whether a file, by its path from the root on, lies in one of the folders below `root`.
+bool lies_in(const fs::path& path, const std::vector<std::string>& folders, const fs::path& root) {
+  for (const std::string& folder : folders) {
+    std::error_code none;
+    const fs::path real = fs::weakly_canonical(folder, none);
+    const fs::path below = path.lexically_relative(real);
+    if (real != root && !below.empty() && *below.begin() != "..") return true;
+  }
+  return false;
+}
+
+Photographs list_photographs(const std::string& folder, const std::vector<std::string>& others,
+                             RunReport* report, Progress* progress) {
   std::error_code none;
   if (!fs::is_directory(folder, none))
     throw InputError(folder, "a folder of photographs",
@@ -43,6 +55,7 @@ Photographs list_photographs(const std::string& folder, RunReport* report, Progr
   std::optional<ImageSize> first;
   for (const std::string& name : list_images(out.folder, true)) {
     const fs::path path = fs::path(out.folder) / name;
+    if (lies_in(path, others, out.folder)) continue;
     ImageSize size;
     try {
       size = read_image_size(path.string());
@@ -229,9 +242,9 @@ void match(const Photographs& photographs, Colmap* colmap, RunReport* report, Pr
 
 }  // namespace
 
-void find_cameras(const std::string& images, const std::string& folder, int threads,
-                  RunReport* report, Progress* progress) {
-  const Photographs photographs = list_photographs(images, report, progress);
+void find_cameras(const std::string& images, const std::vector<std::string>& others,
+                  const std::string& folder, int threads, RunReport* report, Progress* progress) {
+  const Photographs photographs = list_photographs(images, others, report, progress);
   prepare_output_folder(folder);
   make_link(photographs.folder, folder + "/images");
   const std::string list = folder + "/photographs.txt";

@@ -144,6 +144,7 @@ void record_evidence(const StrokeObservation& o, const EdgeWorld& world, double 
     e.opacity = s.cover;
     e.support_views = s.views;
     e.rms_px = s.rms_px;
+    e.bias_px = s.bias_px;
     e.sigma = covariance[i].sigma;
     e.determined = covariance[i].determined;
     e.covariance.clear();

@@ -61,12 +61,8 @@ void list_segment(SegmentOptions* o, Fields* f) {
 void list_select(SelectOptions* o, Fields* f) {
   f->group("Choosing strokes");
   f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
-  f->add("min-cover", &o->min_cover, "", 0, 1, "Share of its length that enough views see");
-  f->add("max-rms", &o->max_rms_px, "px", 0.01, 100,
-         "Scatter of its edgels above that of the scene");
-  f->add("max-bias", &o->max_bias_px, "px", 0.01, 100, "Offset from view to view");
-  f->add("max-width", &o->max_width, "times sharp", 1, 100, "Blur of its edges");
-  f->add("min-seen", &o->min_seen, "", 0, 1, "Share of the sure sightings with an edge");
+  f->add("min-nats", &o->least_nats, "nat", -1000, 1000,
+         "Logarithm of the likelihood ratio of an edge and of none that a stroke needs");
   f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
 }
 
@@ -205,6 +201,8 @@ void list_fields(CommonOptions* o, Fields* f) {
   f->add("seed", &o->seed, "", 0, HUGE_VAL, "Seed of everything that is drawn at random");
   f->add("quiet", &o->quiet, "Say nothing but errors").short_name = "q";
   f->add("verbose", &o->verbose, "Say more while working").short_name = "v";
+  f->add("json", &o->json, "Write results to standard output as JSON");
+  f->add("log", &o->log, "FILE", "Add everything that is said to this file, with the time");
 }
 
 void list_fields(ReconstructOptions* o, Fields* f) {
@@ -224,10 +222,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("joint-sigma", &o->rechain.sigma_px, "px", 0.01, 10,
          "Least standard deviation of what all views say of a place");
   list_select(&o->select, f);
-  f->add("surfel-bias", &o->surfel_bias_px, "px", 0, 100,
-         "At least --max-bias of edges that surfels tell of (--detector 2dgs-sn)");
-  f->add("surfel-rms", &o->surfel_rms_px, "px", 0, 100,
-         "At least --max-rms of edges that surfels tell of and that lie still");
+  f->add("surfel-sigma", &o->surfel_sigma_px, "px", 0.01, 100,
+         "Scatter of edges that surfels tell of about their stroke");
   f->add("surfel-gap-price", &o->surfel_gap_price, "times", 0, 100,
          "At least --gap-price of edges that surfels tell of");
   list_extent(&o->extent, f);
@@ -261,6 +257,8 @@ void list_fields(OutputOptions* o, Fields* f) {
   f->add("overlays", &o->overlays, "views", 0, 100, "Views over which the curves are drawn");
   f->add("point-spacing", &o->point_spacing, "of the extent", 1e-5, 1,
          "Distance of the samples in edge_points.ply");
+  f->add("reproducible", &o->reproducible,
+         "Leave times, memory and threads out of the reports: same input, same bytes");
   list_fields(&o->cad, f);
 }
 

@@ -31,6 +31,8 @@ struct CommonOptions {
   int seed = 0;
   bool quiet = false;
   bool verbose = false;
+  bool json = false;  ///< results on standard output as JSON
+  std::string log;    ///< file for everything that is said, too; empty: none
 };
 
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
@@ -54,10 +56,8 @@ struct ReconstructOptions : DetectionOptions {
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
   bool second_look = true;   ///< at the edgels that no stroke explains
   bool final_polish = true;  ///< end on the edgels themselves
-  /// [px] offset from view to view of edges that surfels alone tell of, if above select.max_bias_px
-  double surfel_bias_px = 0.4;
-  /// [px] scatter of edges that surfels tell of and that lie still, if above select.max_rms_px
-  double surfel_rms_px = 0.45;
+  /// [px] standard deviation of the edgels of surfels about their edge, see EvidenceModel
+  double surfel_sigma_px = 0.25;
   /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
   double surfel_gap_price = 2;
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
@@ -75,6 +75,7 @@ struct CadOptions {
 struct OutputOptions {
   int overlays = 4;              ///< views that are drawn over
   double point_spacing = 0.005;  ///< fraction of the sketch's largest extent
+  bool reproducible = false;     ///< no times, memory and threads in the reports
   CadOptions cad;                ///< of sketch.step
 };
 

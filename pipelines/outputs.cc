@@ -12,6 +12,7 @@
 #include "pipelines/atomic_file.h"
 #include "pipelines/overlay.h"
 #include "pipelines/report.h"
+#include "pipelines/version.h"
 #include "sketches/io.h"
 
 namespace sketchsplat {
@@ -70,10 +71,12 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
                   const Scene& scene, const std::string& options_json,
                   const OutputOptions& options) {
   const Sketch& sketch = reconstruction.sketch;
-  Json extra = {{"program", "sketchsplat"}, {"version", SKETCHSPLAT_VERSION}};
+  Json extra = {{"program", "sketchsplat"}, {"version", program_version()}};
   extra["options"] = Json::parse(options_json);
   extra["regularities"] = json_of(reconstruction.report.regularities);
   extra["views"] = reconstruction.views;
+  for (const auto& [name, value] : reconstruction.report.counts)
+    if (name == "footprint") extra[name] = value;
   if (reconstruction.proposed.size() > 0) {
     std::ostringstream proposed;
     write_sketch_json(proposed, reconstruction.proposed);
@@ -126,9 +129,10 @@ void write_outputs(const std::string& folder, Reconstruction reconstruction, con
     remove_old_overlays(folder);
     overlays = write_overlays(folder, sketch, scene, output_options.overlays,
                               &reconstruction.report, progress);
-    stage.result(folder);
+    stage.result(std::to_string(overlays.size()) + " overlays");
   }
-  const std::string report = report_json({&reconstruction, &scene, fields_json(all.list)});
+  const std::string report = report_json(
+      {&reconstruction, &scene, fields_json(all.list), output_options.reproducible});
   write_atomically(folder + "/report.json", [&](std::ostream& out) { out << report; });
   write_atomically(folder + "/report.html",
                    [&](std::ostream& out) { out << report_html(report, sketch, overlays); });

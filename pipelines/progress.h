@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace sketchsplat {
 
@@ -15,32 +17,56 @@ class Progress {
   enum class Mode { kSilent, kLines, kBar };
 
   explicit Progress(Mode mode, bool verbose = false) : mode_(mode), verbose_(verbose) {}
+  /// Whether stderr is a terminal that can move its cursor.
   static bool stderr_is_terminal();
+  /// The same, and nobody asked for NO_COLOR (https://no-color.org).
+  static bool stderr_has_color();
+
+  void use_color(bool color) { color_ = color; }
+  /// Everything that is said goes to the end of this file, too, with the time of day; silent or
+  /// not. Throws OutputError.
+  void log_to(const std::string& path);
+  /// A line for the log alone.
+  void log(const std::string& text);
 
   /// `total` is the number of step()s that will come; 0 if nobody knows.
   void begin(const std::string& stage, int total);
   void step();
+  /// How much of the stage's work is done, if steps take unequally long: for the time left.
+  void share(double done) { share_ = done; }
   /// Ends the stage; `result` says in a few words what came out, may be empty.
   void end(const std::string& result = "");
   /// A line about something that went wrong but does not stop the run. Nothing if silent.
   void warn(const std::string& text);
+  /// A line about a part of a stage, where there is no bar to show that.
+  void tell(const std::string& text);
   /// A line for those who asked for more (--verbose).
   void note(const std::string& text);
+  /// The warnings once more, at the end of everything, unless nothing came between.
+  void repeat_warnings();
 
  private:
   using Clock = std::chrono::steady_clock;
   void draw();
   void clear_bar();
-  void say(const std::string& line);
+  void say(const std::string& line, bool warning = false);
+  std::string time_left(int count) const;
 
   Mode mode_;
-  bool verbose_;
+  bool verbose_, color_ = false;
   std::string stage_;
   int total_ = 0;
   std::atomic<int> count_{0};
+  std::atomic<double> share_{-1};
   Clock::time_point began_, drawn_;
   bool bar_on_screen_ = false;
+  std::vector<std::string> warnings_;
+  bool said_since_ = false;  // something that is no warning
+  std::ofstream log_;
   std::mutex mutex_;
 };
+
+/// "40 s", "12 min", "3 h 20 min", "2 d 4 h": coarsely, as nobody knows it better.
+std::string rough_duration(double seconds);
 
 }  // namespace sketchsplat

@@ -19,7 +19,8 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
   report.warnings = scene.warnings;
 
   const std::unique_ptr<Detector> detector = make_detector(options);
-  const EdgeWorld world = detect_scene(scene, detector.get(), &report, progress);
+  const EdgeWorld all = detect_scene(scene, detector.get(), options, &report, progress);
+  const EdgeWorld world = focus_on_object(all, options, &report, progress);
   const std::vector<EdgePoint> points = lift_scene(world, options, &report, progress);
   Sketch sketch = fit_strokes(points, world, options, &report, progress);
   probe_poses(sketch, world, options, progress); return {};

@@ -74,7 +74,6 @@ Regularized regularize(const Sketch& sketch, const StrokeObservation& seen, doub
     RegularityFinder finder(sketch, all, footprint, options);
     if (!finder.weigher().ok()) return out;
     finder.find(stages);
-    if (finder.weigher().exhausted()) continue;
     Relations relations = finder.kept();
     if (relations.list.empty()) return out;
     const Samples linear = evaluate_samples(finder.weigher().sketch(), seen.layout);

@@ -94,9 +94,12 @@ RelationWeigher::Own RelationWeigher::own(const Relation& relation) const {
 }
 
 RelationWeigher::Own RelationWeigher::ask(Relation relation, const SharedQuantity& quantity) {
+  if (exhausted()) return {VectorXd::Zero(3), HUGE_VAL};
   relations_.shared.push_back(quantity);
   relation.shared = num_shared() - 1;
   const Own answer = own(relation);
+  const double k = double(answer.residual.size());
+  work_ += k * (30 * gaussian_.size() + (1 + k) * gaussian_.taken());
   relations_.shared.pop_back();
   return answer;
 }

@@ -35,7 +35,7 @@ class RelationWeigher {
   double unit() const { return unit_; }      ///< world length of a pixel
   double extent() const { return extent_; }  ///< of the sketch, world units
 
-  /// Was there more to do than most_work allows? Then nothing that was taken counts.
+  /// Was there more to do than most_work allows? Then nothing more is found or taken.
   bool exhausted() const { return work_ > options_.most_work; }
   double gain() const { return gain_; }  ///< [nat] of parameters that need not be stated
 

@@ -9,7 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pipelines/overlay.h"
-#include "pipelines/report_page.h"
+#include "pipelines/page.h"
+#include "pipelines/version.h"
 #include "sketches/curve.h"
 #include "sketches/curve_chain.h"
 
@@ -34,11 +35,17 @@ Json object_of(const Numbers& numbers) {
   return object;
 }
 
-Json stages_json(const RunReport& run) {
+Json stages_json(const RunReport& run, bool reproducible) {
   Json stages = Json::array();
-  for (const StageReport& s : run.stages)
-    stages.push_back(
-        {{"name", s.name}, {"seconds", s.seconds}, {"peak_mb", s.peak_mb}, {"result", s.result}});
+  for (const StageReport& s : run.stages) {
+    Json stage = {{"name", s.name}};
+    if (!reproducible) {
+      stage["seconds"] = s.seconds;
+      stage["peak_mb"] = s.peak_mb;
+    }
+    stage["result"] = s.result;
+    stages.push_back(stage);
+  }
   return stages;
 }
 
@@ -92,33 +99,6 @@ Json curves_json(const Sketch& sketch) {
   return curves;
 }
 
-std::string base64(const std::string& bytes) {
-  static const char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t word = 0;
-    for (size_t k = 0; k < 3; ++k)
-      word = word << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
-    for (int k = 3; k >= 0; --k)
-      text += i + size_t(3 - k) > bytes.size() ? '=' : kDigits[word >> (6 * k) & 63];
-  }
-  return text;
-}
-
-// No text of ours may end the script element: "<" appears in JSON inside of strings only.
-std::string without_tags(const std::string& json) {
-  std::string safe;
-  safe.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 }  // namespace
 
 Extent sketch_extent(const Sketch& sketch) {
@@ -140,13 +120,16 @@ std::string report_json(const ReportInput& input) {
   for (const Numbers& round : run.rounds) rounds.push_back(object_of(round));
   Json json;
   json["program"] = "sketchsplat";
-  json["version"] = SKETCHSPLAT_VERSION;
+  json["version"] = program_version();
+  json["commit"] = program_commit();
   json["scene"] = {{"folder", input.scene->folder}, {"format", input.scene->format}};
-  json["threads"] = omp_get_max_threads();
-  json["seconds"] = seconds.count();
-  json["peak_mb"] = peak_memory_mb();
+  if (!input.reproducible) {
+    json["threads"] = omp_get_max_threads();
+    json["seconds"] = seconds.count();
+    json["peak_mb"] = peak_memory_mb();
+  }
   json["counts"] = counts_json(input);
-  json["stages"] = stages_json(run);
+  json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;
   json["strokes"] = Json::array();
   for (const Numbers& stroke : run.strokes) json["strokes"].push_back(object_of(stroke));
@@ -169,9 +152,7 @@ std::string report_html(const std::string& report, const Sketch& sketch,
   for (const ReportImage& image : overlays)
     data["overlays"].push_back({{"name", image.name}, {"png", base64(image.png)}});
 
-  const std::string page = kReportPage, mark = "@DATA@";
-  const size_t at = page.find(mark);
-  return page.substr(0, at) + without_tags(dump(data, -1)) + page.substr(at + mark.size());
+  return fill_page(kReportPage, dump(data, -1));
 }
 
 }  // namespace sketchsplat

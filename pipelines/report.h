@@ -13,9 +13,10 @@ struct ReportInput {
   const Reconstruction* reconstruction;
   const Scene* scene;
   std::string options_json;  ///< object of option -> value (fields_json)
+  bool reproducible = false;  ///< without seconds, memory and threads
 };
 
-/// report.json: seconds per stage, peak memory, counts, rounds, warnings, options, version,
+/// report.json: seconds per stage, peak memory, counts, rounds, warnings, options, version, commit,
 /// threads.
 std::string report_json(const ReportInput& input);
 

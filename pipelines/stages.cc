@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/errors.h"
+#include "edges/focus.h"
 #include "edges/link.h"
 #include "edges/unexplained.h"
 #include "pipelines/confidence.h"
@@ -20,6 +21,10 @@ namespace sketchsplat {
 namespace {
 
 constexpr int kFewestViews = 3;
+constexpr double kCoarseSides = 6;  // of the picture: edgels among which the object is looked for
+constexpr double kCoarser = 4;      // times the stride at which they are lifted
+constexpr int kCoarseViews = 16;    // that score their depths
+constexpr double kBeyond = 1.5;     // times what a view sees: bounds without masks
 constexpr int kSecondViews = 3;      // that agree on a point where nothing else is
 constexpr int kShortestRest = 8;     // edgels: shorter rests of chains are corners and noise
 constexpr double kLonger = 3;        // times the shortest stroke: the shortest that comes late
@@ -28,8 +33,17 @@ constexpr double kSmoother = 0.1;    // standard deviation of smooth joints at l
 
 }  // namespace
 
-EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report,
-                       Progress* progress) {
+namespace {
+
+double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
+  const double sides = options.detect.meaning.most_sides;
+  return sides > 0 ? sides * std::sqrt(double(map.width) * map.height) : INFINITY;
+}
+
+}  // namespace
+
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const ReconstructOptions& options,
+                       RunReport* report, Progress* progress) {
   std::vector<Detection> found = detect_all(scene, detector, report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
@@ -48,7 +62,29 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report
   report->counts.push_back({"views", double(views.size())});
   report->counts.push_back({"edgels", double(edgels)});
   Stage stage("hull", 0, report, progress);
+  for (EdgelMap& map : maps)
+    if (!map.mask.empty()) map = most_meaningful(map, most_edgels(map, options));
   return make_edge_world(std::move(views), std::move(maps));
+}
+
+EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
+                          RunReport* report, Progress* progress) {
+  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
+                                  [](const EdgelMap& m) { return !m.mask.empty(); });
+  if (masked) return world;
+  Stage stage("object", 0, report, progress);
+  const EdgeWorld coarse = focused(world, {}, kCoarseSides);
+  LiftOptions lift = options.lift;
+  lift.stride_px *= kCoarser;
+  lift.sweep_views = std::min(lift.sweep_views, kCoarseViews);
+  std::vector<Eigen::Vector3d> points, cameras;
+  for (const EdgePoint& p : lift_edges(coarse, lift)) points.push_back(p.position);
+  for (const View& v : world.views) cameras.push_back(v.center_in_world());
+  const ObjectRegion object =
+      find_object(points, cameras, meeting_point(world.views),
+                  0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, {});
+  stage.result(object.table ? "on a table" : "no table");
+  return focused(world, object, options.detect.meaning.most_sides);
 }
 
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
@@ -87,10 +123,10 @@ void note_verdicts(const Sketch& sketch, const Selection& selection, Progress* p
     char line[200];
     std::snprintf(line, sizeof line,
                   "%s %d is %s: %.0f px, %d views, scatter %.2f px, moves %.2f px, width %.2f px, "
-                  "cover %.2f, seen %.2f",
+                  "cover %.2f, %.1f nat",
                   kind_name(sketch.strokes[i].kind), i, verdict_name(selection.verdicts[i]),
                   s.length_px, s.views, s.rms_px, s.bias_px, s.width_px, s.cover,
-                  selection.seen[i]);
+                  selection.nats[i]);
     progress->note(line);
   }
 }
@@ -164,13 +200,8 @@ SelectOptions select_options(const ReconstructOptions& options) {
   SelectOptions select = options.select;
   select.price = options.segment.price;
   select.place_sigma_px = options.rechain.sigma_px;
-  // Surfels say less exactly than pictures where an edge is, and their detector has left out the
-  // contours of round surfaces: a stroke may stand off further in single views. Print that runs up
-  // to an edge scatters its edgels, but moves it in no view.
-  if (options.detector == "2dgs-sn") {
-    select.max_bias_px = std::max(select.max_bias_px, options.surfel_bias_px);
-    select.still_rms_px = options.surfel_rms_px;
-  }
+  // Surfels say less exactly than pictures where an edge is.
+  if (options.detector == "2dgs-sn") select.evidence.least_sigma_px = options.surfel_sigma_px;
   return select;
 }
 
@@ -266,9 +297,7 @@ Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
   std::vector<bool> keep(both.size(), true);
   int added = 0;
   for (int i = sketch.size(); i < both.size(); ++i) {
-    // Most of what is left are contours. Some lie still by chance, so stillness is no excuse here.
-    const bool unseen = chosen.seen[i] >= 0 && chosen.seen[i] < options.select.min_seen;
-    keep[i] = chosen.verdicts[i] == Verdict::kKept && !unseen &&
+    keep[i] = chosen.verdicts[i] == Verdict::kKept &&
               chosen.stats[i].length_px >= kLonger * options.select.min_length_px;
     added += keep[i];
   }
@@ -369,6 +398,7 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
   report->counts.push_back({"loose_ends", double(count_loose_ends(out, world.footprint))});
   report->counts.push_back({"unsure", double(unsure)});
   report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
+  report->counts.push_back({"footprint", world.footprint});
   stage.result(std::to_string(out.size()) + " strokes");
   return out;
 }

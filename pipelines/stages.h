@@ -15,8 +15,13 @@ namespace sketchsplat {
 /// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are left
 /// out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError if no
 /// image, or no map of that name, can be read.
-EdgeWorld detect_scene(const Scene& scene, Detector* detector, RunReport* report,
-                       Progress* progress);
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const ReconstructOptions& options,
+                       RunReport* report, Progress* progress);
+
+/// Without masks: finds the object among other things (object_region.h) by the longest edges, and
+/// leaves out edgels that cannot be of it. With masks nothing changes.
+EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
+                          RunReport* report, Progress* progress);
 
 /// The space sweep over all edgels. Throws TooLittleError if no point is found.
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,

@@ -153,13 +153,14 @@ Eigen::Matrix3Xd sample_chain(const Sketch& sketch, const CurveChain& chain, dou
 Evidence chain_evidence(const Sketch& sketch, const CurveChain& chain) {
   Evidence out = sketch.evidence[chain.strokes[0]];
   if (chain.strokes.size() == 1) return out;
-  double total = 0, opacity = 0, squares = 0;
+  double total = 0, opacity = 0, squares = 0, bias = 0;
   for (int s : chain.strokes) {
     const Evidence& e = sketch.evidence[s];
     const double length = stroke_length(sketch, s);
     total += length;
     opacity += length * e.opacity;
     squares += length * e.rms_px * e.rms_px;
+    bias += length * e.bias_px;
     out.support_views = std::min(out.support_views, e.support_views);
     out.sigma = std::max(out.sigma, e.sigma);
     out.views.insert(out.views.end(), e.views.begin(), e.views.end());
@@ -169,7 +170,11 @@ Evidence chain_evidence(const Sketch& sketch, const CurveChain& chain) {
   out.views.erase(std::unique(out.views.begin(), out.views.end()), out.views.end());
   if (!out.views.empty()) out.support_views = int(out.views.size());
   out.covariance.clear(), out.determined = 0;
-  if (total > 0) out.opacity = opacity / total, out.rms_px = std::sqrt(squares / total);
+  if (total > 0) {
+    out.opacity = opacity / total;
+    out.rms_px = std::sqrt(squares / total);
+    out.bias_px = bias / total;
+  }
   return out;
 }
 

@@ -1,30 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/information.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <vector>
 
-#include "sketches/curve.h"
+#include "sketches/curve_jacobian.h"
 
 namespace sketchsplat {
 namespace {
 
-using Jet12 = ceres::Jet<double, 12>;  // three coordinates of up to four control points
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
-
-// Of a point on a curve by its control points.
-Eigen::Matrix<double, 3, 12> jacobian_of(StrokeKind kind, const ControlPoints& c, double t) {
-  Vec3<Jet12> control[4], position, derivative;
-  for (int i = 0; i < c.count; ++i)
-    for (int k = 0; k < 3; ++k) control[i][k] = Jet12(c.p[i][k], 3 * i + k);
-  evaluate_curve<Jet12>(kind, control, t, &position, &derivative);
-  Eigen::Matrix<double, 3, 12> j;
-  for (int k = 0; k < 3; ++k) j.row(k) = position[k].v.transpose();
-  return j;
-}
 
 // Places of a stroke's control points among all, nodes first.
 std::vector<int> places_of(const Sketch& sketch, int stroke) {
@@ -57,7 +43,7 @@ SketchQuadratic sketch_quadratic(const Sketch& sketch, const SampleLayout& layou
       const double strength = quadratics.information[i].trace();
       if (!(strength > 0)) continue;
       trace += strength, ++informed;
-      const auto j = jacobian_of(sketch.strokes[s].kind, c, layout.t[i]);
+      const auto j = curve_jacobian(sketch.strokes[s].kind, c, layout.t[i]);
       sum += j.transpose() * quadratics.information[i] * j;
       slope += j.transpose() * quadratics.slope.col(i);
     }

@@ -31,11 +31,19 @@ void write_parametric_edges(std::ostream& out, const Sketch& sketch);
 void write_obj(std::ostream& out, const Sketch& sketch, double deflection = 1e-4,
                double scale = 1.0);
 
+/// What strokes of a STEP file look like, and the layer that holds them.
+struct StepPaint {
+  std::string layer;
+  double red = 0, green = 0, blue = 0;  ///< [0, 1]
+};
+
 struct StepOptions {
   std::string name = "sketch";                ///< of the product, as CAD programs show it
   double scale = 1.0;                         ///< units per world unit
   LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
   std::vector<PlanarFace> faces = {};         ///< written as such; their strokes bound them
+  std::vector<StepPaint> paints = {};         ///< empty: a colour and a layer by kind
+  std::vector<int> paint_of_stroke = {};      ///< of each stroke; index into paints, if there are
 };
 /// AP214 edge-based wireframe: one product, one vertex per junction; LINE, CIRCLE, ELLIPSE,
 /// B_SPLINE_CURVE as such, one CONNECTED_EDGE_SET per unbranched chain; a colour and a layer by

@@ -8,6 +8,7 @@
 #include "sketches/conic.h"
 #include "sketches/curve_chain.h"
 #include "sketches/io.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace {
@@ -68,6 +69,7 @@ Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<in
   out["opacity"] = e.opacity;
   out["support_views"] = e.support_views;
   out["rms_px"] = e.rms_px;
+  if (e.bias_px > 0) out["bias_px"] = e.bias_px;
   out["sigma"] = e.sigma;
   if (!std::isnan(e.confidence)) out["confidence"] = e.confidence;
   if (!e.views.empty()) out["views"] = e.views;
@@ -163,6 +165,7 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
   if (j.contains("support_views"))
     e.support_views = reader.integer(j["support_views"], "a count as support_views in " + where);
   e.rms_px = reader.number(j, "rms_px", e.rms_px, where);
+  e.bias_px = reader.number(j, "bias_px", e.bias_px, where);
   e.sigma = reader.number(j, "sigma", e.sigma, where);
   e.confidence = reader.number(j, "confidence", e.confidence, where);
   if (j.contains("views"))
@@ -216,7 +219,7 @@ Sketch read_sketch_json(std::istream& in, const std::string& path) {
   const Reader reader(path);
   Json j;
   try {
-    j = Json::parse(in);
+    j = parse_json<Json>(in, path);
   } catch (const Json::exception& e) {
     reader.fail("a sketch as JSON", e.what());
   }

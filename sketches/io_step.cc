@@ -19,13 +19,12 @@ using step::real;
 using step::reference;
 using step::StepFile;
 
-// Of the kinds, in the order of StrokeKind, and of faces: dark grey, blue, green, violet, orange,
-// rose; light grey.
-constexpr double kColour[kNumKinds + 1][3] = {
-    {0.15, 0.15, 0.15}, {0.0, 0.35, 0.85}, {0.0, 0.6, 0.3}, {0.6, 0.1, 0.7},
-    {0.9, 0.45, 0.0},   {0.85, 0.1, 0.45}, {0.8, 0.8, 0.8}};
-constexpr const char* kLayer[kNumKinds + 1] = {"line",   "arc",          "circle", "ellipse",
-                                               "spline", "elliptic_arc", "face"};
+// Of the kinds, in the order of StrokeKind: dark grey, blue, green, violet, orange, rose; and of
+// faces: light grey.
+const std::vector<StepPaint> kKindPaints = {
+    {"line", 0.15, 0.15, 0.15}, {"arc", 0.0, 0.35, 0.85},   {"circle", 0.0, 0.6, 0.3},
+    {"ellipse", 0.6, 0.1, 0.7}, {"spline", 0.9, 0.45, 0.0}, {"elliptic_arc", 0.85, 0.1, 0.45}};
+const StepPaint kFacePaint = {"face", 0.8, 0.8, 0.8};
 
 // A share of the sketch's extent that no CAD program looks at: arcs flatter than it are lines.
 constexpr double kUncertainty = 1e-7;
@@ -167,13 +166,12 @@ void write_product(StepFile* file, const std::string& name, int representation) 
             reference(representation) + ")");
 }
 
-// How edges of a kind look; faces come after the kinds.
-int write_style(StepFile* file, int kind, int font) {
-  const double* rgb = kColour[kind];
-  const std::string colour = reference(
-      file->add("COLOUR_RGB(''," + real(rgb[0]) + "," + real(rgb[1]) + "," + real(rgb[2]) + ")"));
+// How edges, or faces, of a paint look.
+int write_style(StepFile* file, const StepPaint& paint, bool faces, int font) {
+  const std::string colour = reference(file->add("COLOUR_RGB(''," + real(paint.red) + "," +
+                                                 real(paint.green) + "," + real(paint.blue) + ")"));
   int style = 0;
-  if (kind < kNumKinds) {
+  if (!faces) {
     style = file->add("CURVE_STYLE(''," + reference(font) + ",POSITIVE_LENGTH_MEASURE(0.1)," +
                       colour + ")");
   } else {
@@ -186,28 +184,36 @@ int write_style(StepFile* file, int kind, int font) {
   return file->add("PRESENTATION_STYLE_ASSIGNMENT(" + list({style}) + ")");
 }
 
-// One style and one layer a kind, one STYLED_ITEM an edge or face.
-void write_presentation(StepFile* file, const Sketch& sketch, const std::vector<int>& edges,
+// One style and one layer a paint, one STYLED_ITEM an edge or face.
+void write_presentation(StepFile* file, const std::vector<StepPaint>& paints,
+                        const std::vector<int>& paint_of_stroke, const std::vector<int>& edges,
                         const std::vector<int>& faces, int context) {
-  std::vector<int> of_kind[kNumKinds + 1], items;
-  for (int i = 0; i < sketch.size(); ++i) of_kind[int(sketch.strokes[i].kind)].push_back(edges[i]);
-  for (std::vector<int>& ids : of_kind) {  // the strokes of a chain have one edge
+  std::vector<std::vector<int>> painted(paints.size());
+  std::vector<int> items;
+  for (size_t i = 0; i < edges.size(); ++i) painted[paint_of_stroke[i]].push_back(edges[i]);
+  for (std::vector<int>& ids : painted) {  // the strokes of a chain have one edge
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   }
-  of_kind[kNumKinds] = faces;
   const int font = file->add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')");
-  for (int kind = 0; kind <= kNumKinds; ++kind) {
-    if (of_kind[kind].empty()) continue;
-    const int style = write_style(file, kind, font);
-    for (const int item : of_kind[kind])
+  const auto write = [&](const StepPaint& paint, const std::vector<int>& ids, bool are_faces) {
+    if (ids.empty()) return;
+    const int style = write_style(file, paint, are_faces, font);
+    for (const int item : ids)
       items.push_back(
           file->add("STYLED_ITEM('colour'," + list({style}) + "," + reference(item) + ")"));
-    file->add("PRESENTATION_LAYER_ASSIGNMENT(" + quoted(kLayer[kind]) + ",''," +
-              list(of_kind[kind]) + ")");
-  }
+    file->add("PRESENTATION_LAYER_ASSIGNMENT(" + quoted(paint.layer) + ",''," + list(ids) + ")");
+  };
+  for (size_t k = 0; k < paints.size(); ++k) write(paints[k], painted[k], false);
+  write(kFacePaint, faces, true);
   file->add("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION(''," + list(items) + "," +
             reference(context) + ")");
+}
+
+std::vector<int> kinds_of(const Sketch& sketch) {
+  std::vector<int> kinds;
+  for (const Stroke& s : sketch.strokes) kinds.push_back(int(s.kind));
+  return kinds;
 }
 
 std::vector<bool> bounding(const Sketch& sketch, const std::vector<PlanarFace>& faces) {
@@ -295,7 +301,10 @@ void write_step(std::ostream& out, const Sketch& sketch, const StepOptions& opti
   const int wireframe = write_wireframe(&file, sketch, edges, bounds, options.name);
   write_product(&file, options.name,
                 write_shape(&file, options.name, origin, wireframe, surfaces, context));
-  if (sketch.size() > 0) write_presentation(&file, sketch, edges, faces, context);
+  const bool by_kind = options.paints.empty();
+  if (sketch.size() > 0)
+    write_presentation(&file, by_kind ? kKindPaints : options.paints,
+                       by_kind ? kinds_of(sketch) : options.paint_of_stroke, edges, faces, context);
   out << "ENDSEC;\nEND-ISO-10303-21;\n";
 }
 

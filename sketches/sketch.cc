@@ -130,7 +130,7 @@ std::vector<std::string> validate(const Sketch& sketch) {
     if (!(e.opacity >= 0 && e.opacity <= 1)) complain(int(i), "has an opacity outside [0, 1]");
     if (e.confidence < 0 || e.confidence > 1) complain(int(i), "has a confidence outside [0, 1]");
     if (e.support_views < 0 || !std::isfinite(e.rms_px) || !std::isfinite(e.sigma) ||
-        e.rms_px < 0 || e.sigma < 0)
+        !std::isfinite(e.bias_px) || e.rms_px < 0 || e.sigma < 0 || e.bias_px < 0)
       complain(int(i), "has negative or infinite evidence");
     if (!e.views.empty() && e.views[0] < 0) complain(int(i), "is seen by a view below 0");
     if (!std::is_sorted(e.views.begin(), e.views.end(), std::less_equal<int>()))

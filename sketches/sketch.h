@@ -61,6 +61,8 @@ struct Evidence {
   /// images determine, see sketches/covariance.h. Empty if unknown.
   std::vector<double> covariance = {};
   int determined = 0;
+  /// [px] by which its views disagree: median over them of the middle distance to their edgels.
+  double bias_px = 0;
 };
 
 /// Curves over shared nodes: strokes that meet hold the same column of `nodes`. World units.

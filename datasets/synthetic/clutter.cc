@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "datasets/synthetic/flat_faces.h"
 #include "datasets/synthetic/noise.h"
 
 namespace sketchsplat {
@@ -15,21 +16,6 @@ using Eigen::Vector3f;
 
 constexpr int kShapes = 160;  // a camera with the field of view of ABC-NEF sees about ten
 
-// Adds a flat face, a fan about its first corner.
-void add_face(const std::vector<Vector3f>& corners, SurfaceMesh* mesh) {
-  const int face = mesh->face.empty() ? 0 : mesh->face.back() + 1;
-  const unsigned first = unsigned(mesh->points.size());
-  const Vector3f normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  for (const Vector3f& corner : corners) {
-    mesh->points.push_back(corner);
-    mesh->normals.push_back(normal);
-  }
-  for (unsigned i = 2; i < corners.size(); ++i) {
-    mesh->corners.push_back({first, first + i - 1, first + i});
-    mesh->face.push_back(face);
-  }
-}
-
 // The frustum over a quadrilateral: a box if `taper` is 1, a pyramid if it is 0.
 void add_shape(const Eigen::Affine3f& placed, float taper, SurfaceMesh* mesh) {
   std::array<Vector3f, 4> low, high;
@@ -38,14 +24,14 @@ void add_shape(const Eigen::Affine3f& placed, float taper, SurfaceMesh* mesh) {
     low[i] = placed * Vector3f(x, y, -1);
     high[i] = placed * Vector3f(taper * x, taper * y, 1);
   }
-  add_face({low.begin(), low.end()}, mesh);
-  if (taper > 0) add_face({high.begin(), high.end()}, mesh);
+  add_flat_face({low.begin(), low.end()}, mesh);
+  if (taper > 0) add_flat_face({high.begin(), high.end()}, mesh);
   for (int i = 0; i < 4; ++i) {
     const int j = (i + 1) % 4;
     if (taper > 0) {
-      add_face({low[i], low[j], high[j], high[i]}, mesh);
+      add_flat_face({low[i], low[j], high[j], high[i]}, mesh);
     } else {
-      add_face({low[i], low[j], high[i]}, mesh);
+      add_flat_face({low[i], low[j], high[i]}, mesh);
     }
   }
 }

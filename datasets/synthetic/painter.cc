@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/synthetic/noise.h"
+#include "datasets/synthetic/pixel_filter.h"
 
 namespace sketchsplat {
 namespace {
@@ -17,31 +18,6 @@ using Eigen::Vector3f;
 
 constexpr int kGrid = 6;  // rays per pixel along x and along y, where something changes
 constexpr int kRays = kGrid * kGrid;
-
-// Blackman-Harris window over three pixels, by the distance from the pixel's centre [px]; 1 in the
-// middle (Harris, "On the use of windows for harmonic analysis", 1978). From a table: it is asked
-// for tens of millions of times.
-class PixelFilter {
- public:
-  PixelFilter() {
-    for (int i = 0; i <= kSteps; ++i) {
-      const double t = 2 * M_PI * (0.5 + 0.5 * i / kSteps);
-      table_[i] = float(0.35875 - 0.48829 * std::cos(t) + 0.14128 * std::cos(2 * t) -
-                        0.01168 * std::cos(3 * t));
-    }
-    table_[kSteps + 1] = table_[kSteps];
-  }
-  float operator()(float x) const {
-    const float at = std::min(std::abs(x) / 1.5f, 1.0f) * kSteps;
-    const int i = int(at);
-    return table_[i] + (at - i) * (table_[i + 1] - table_[i]);
-  }
-
- private:
-  static constexpr int kSteps = 512;
-  std::array<float, kSteps + 2> table_;
-};
-const PixelFilter pixel_filter;
 
 struct Rect {
   int x0, y0, x1, y1;  // [x0, x1) x [y0, y1)
@@ -209,7 +185,7 @@ class Painter {
           for (int v = std::max(y - 1, rect_.y0); v < std::min(y + 2, rect_.y1); ++v)
             for (int u = std::max(x - 1, rect_.x0); u < std::min(x + 2, rect_.x1); ++u)
               soft_.at(u, v) = 1;
-    const std::array<float, 9> flat = weights_of_a_flat_pixel();
+    const std::array<float, 9> flat = weights_of_a_grid(kGrid);
     for (int y = rect_.y0; y < rect_.y1; ++y)
       for (int x = rect_.x0; x < rect_.x1; ++x) {
         if (busy_.at(x, y)) {
@@ -222,17 +198,6 @@ class Painter {
           add(x, y, sums);
         }
       }
-  }
-
-  // A pixel where nothing changes counts as a grid of equal rays.
-  static std::array<float, 9> weights_of_a_flat_pixel() {
-    std::array<float, 9> weights{};
-    for (int i = 0; i < kRays; ++i) {
-      const float x = (i % kGrid + 0.5f) / kGrid - 0.5f, y = (i / kGrid + 0.5f) / kGrid - 0.5f;
-      for (int k = 0; k < 9; ++k)
-        weights[k] += pixel_filter(x - float(k % 3 - 1)) * pixel_filter(y - float(k / 3 - 1));
-    }
-    return weights;
   }
 
   bool beside_soft(int x, int y) const {
@@ -259,10 +224,9 @@ class Painter {
     for (int i = 0; i < kRays; ++i) {
       const bool covered = seen.hits[i].face >= 0 && !seen.behind[i];
       const float light = light_of_ray(seen, i, directions[i], x, y);
-      const float wx[3] = {pixel_filter(dx[i] + 1), pixel_filter(dx[i]), pixel_filter(dx[i] - 1)};
-      const float wy[3] = {pixel_filter(dy[i] + 1), pixel_filter(dy[i]), pixel_filter(dy[i] - 1)};
+      const std::array<float, 9> weights = weights_of_a_ray(dx[i], dy[i]);
       for (int k = 0; k < 9; ++k) {
-        const float weight = wx[k % 3] * wy[k / 3];
+        const float weight = weights[k];
         sums[k].light += weight * light;
         sums[k].alpha += covered ? weight : 0.0f;
         sums[k].weight += weight;

@@ -50,7 +50,10 @@ std::vector<PartSpec> make_specs() {
         {"length", "mm", 70, 90},
         {"radius", "mm", 2.5, 5},
         {"inset", "mm", 8, 11},
-        {"bore", "mm", 9, 13}}},
+        {"bore", "mm", 9, 13},
+        // What may be wrong with one of them, for inspection: never drawn.
+        {"hole-shift", kLongest, 0, 0, 0, 0.01},
+        {"bore-error", "%", 0, 0, -5, 5}}},
       {"stepped-shaft",
        {{"radius", "mm", 8, 12},
         {"second-radius", "of radius", 1.5, 1.9},

@@ -17,10 +17,14 @@ TopoDS_Shape plate_holes(const Dimensions& d) {
   const double inset = d["inset"];
   TopoDS_Shape shape = box(Vector3d::Zero(), size);
   const Vector3d through(0, 0, size.z() + 2);
+  double shift = d["hole-shift"] * size.x();  // of the first hole
   for (double x : {inset, size.x() - inset})
-    for (double y : {inset, size.y() - inset})
-      shape = cut(shape, cylinder({x, y, -1}, through, d["radius"]));
-  return cut(shape, cylinder({size.x() / 2, size.y() / 2, -1}, through, d["bore"]));
+    for (double y : {inset, size.y() - inset}) {
+      shape = cut(shape, cylinder({x + 0.6 * shift, y + 0.8 * shift, -1}, through, d["radius"]));
+      shift = 0;
+    }
+  const double bore = d["bore"] * (1 + d["bore-error"] / 100);
+  return cut(shape, cylinder({size.x() / 2, size.y() / 2, -1}, through, bore));
 }
 
 TopoDS_Shape slotted_sheet(const Dimensions& d) {

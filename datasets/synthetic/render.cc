@@ -29,6 +29,7 @@ void blur(double sigma, Image<float>* image) {
   for (float& k : kernel) k /= sum;
   for (const bool along_x : {true, false}) {
     const Image<float> in = *image;
+#pragma omp parallel for
     for (int y = 0; y < in.height; ++y)
       for (int x = 0; x < in.width; ++x) {
         float value = 0;
@@ -63,7 +64,7 @@ Picture expose(const Painting& painting, const RenderOptions& options, std::uint
     blur(options.blur, &alpha_of);
   }
   const bool transparent = options.transparent && !options.clutter;
-  const float gain = float(std::exp2(options.exposure * normal(hash(seed, index, 0, 1))));
+  const float gain = float(exposure_of(options, seed, index));
   const float background = options.clutter ? 0.0f : from_srgb(float(options.background));
   const int w = light_of.width, h = light_of.height;
   Picture picture;
@@ -87,6 +88,28 @@ Picture expose(const Painting& painting, const RenderOptions& options, std::uint
   picture.green = picture.blue = grey;
   if (transparent) picture.alpha = std::move(alpha_of);
   return options.jpeg > 0 ? compressed(std::move(picture), options) : picture;
+}
+
+double exposure_of(const RenderOptions& options, std::uint64_t seed, int index) {
+  return std::exp2(options.exposure * normal(hash(seed, index, 0, 1)));
+}
+
+void expose_photo(const RenderOptions& options, std::uint64_t seed, int index, Picture* picture) {
+  const float gain = float(exposure_of(options, seed, index));
+  Image<float>* const planes[] = {&picture->red, &picture->green, &picture->blue};
+  for (int c = 0; c < 3; ++c) {
+    Image<float>& plane = *planes[c];
+    if (options.blur > 0) blur(options.blur, &plane);
+#pragma omp parallel for
+    for (int y = 0; y < plane.height; ++y)
+      for (int x = 0; x < plane.width; ++x) {
+        double value = to_srgb(gain * plane.at(x, y));
+        if (options.noise > 0)
+          value += options.noise / 255 *
+                   normal(hash(seed, index, std::uint64_t(y) << 20 | std::uint64_t(x), 4 + c));
+        plane.at(x, y) = float(std::clamp(value, 0.0, 1.0));
+      }
+  }
 }
 
 }  // namespace sketchsplat

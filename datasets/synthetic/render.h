@@ -16,7 +16,8 @@ struct RenderOptions {
   double noise = 0;  ///< standard deviation of the noise [grey levels], [0, 100]; where alpha > 0
   double blur = 0;   ///< Gaussian blur [px], [0, 20]
   double exposure = 0;  ///< standard deviation of the exposure of views [stops], [0, 2]
-  int jpeg = 0;  ///< quality of a compression that the picture went through, [0, 100]; 0: none
+  int jpeg = 0;  ///< quality of a compression that the picture went through, [0, 100]; 0: none, of
+                 ///< photographs 92
   bool transparent = true;  ///< alpha is the coverage; else the picture is opaque
   double background = 1.0;  ///< grey of an opaque background, [0, 1]
 };
@@ -27,5 +28,12 @@ struct RenderOptions {
 /// its background; alpha stays as it is.
 Picture expose(const Painting& painting, const RenderOptions& options, std::uint64_t seed,
                int index);
+
+/// The same of a photograph's colours, linear light before and in [0, 1] after, in place. Noise is
+/// of each colour its own; nothing is compressed; alpha, if any, stays as it is.
+void expose_photo(const RenderOptions& options, std::uint64_t seed, int index, Picture* picture);
+
+/// How much more light than on average a view gets.
+double exposure_of(const RenderOptions& options, std::uint64_t seed, int index);
 
 }  // namespace sketchsplat

@@ -48,14 +48,8 @@ Vector3d direction(const RigOptions& options, int k, std::uint64_t seed) {
   }
 }
 
-double focal_length(const RigOptions& options) {
-  constexpr double kFocalAt800 = 1111.1113654242622;  // of ABC-NEF
-  if (options.object_size > 0) return options.object_size * options.resolution * options.distance;
-  return options.focal > 0 ? options.focal : kFocalAt800 * options.resolution / 800;
-}
-
-Pose looking_at_origin(const Vector3d& centre) {
-  const Vector3d forward = -centre.normalized();
+Pose looking_at(const Vector3d& target, const Vector3d& centre) {
+  const Vector3d forward = (target - centre).normalized();
   Vector3d right = forward.cross(Vector3d::UnitZ());
   if (right.norm() < 1e-6) right = forward.cross(Vector3d::UnitY());
   right.normalize();
@@ -67,24 +61,46 @@ Pose looking_at_origin(const Vector3d& centre) {
   return pose;
 }
 
+// As somebody who walks around a table with a camera holds it.
+Pose held_by_hand(const RigOptions& options, int k, std::uint64_t seed) {
+  const auto waver = [&](int use) { return 2 * uniform(hash(seed, k, use, 41)) - 1; };
+  constexpr double kLow = 14 * M_PI / 180, kHigh = 60 * M_PI / 180;
+  const double share = (k + 0.5) / options.views, golden = (std::sqrt(5.0) - 1) / 2;
+  const double z = std::sin(kLow) + (std::sin(kHigh) - std::sin(kLow)) * share;
+  const double turn = uniform(hash(seed, 0, 0, 7));
+  const Vector3d d = on_sphere(z, 2 * M_PI * (k * golden + turn) + 0.1 * waver(0));
+  const Vector3d target(0.08 * waver(1), 0.08 * waver(2), 0.08 * waver(3));
+  Pose pose = looking_at(target, options.distance * (1 + 0.08 * waver(4)) * d);
+  const Eigen::Matrix3d roll =
+      Eigen::AngleAxisd(0.08 * waver(5), Vector3d::UnitZ()).toRotationMatrix();
+  return {roll * pose.rotation, roll * pose.translation};
+}
+
 }  // namespace
 
-std::vector<View> make_rig(const RigOptions& options, std::uint64_t seed) {
+std::vector<View> make_rig(const RigOptions& given, std::uint64_t seed) {
+  const RigOptions options = resolved(given, /*photographs=*/false);
   Camera camera;
-  camera.width = camera.height = options.resolution;
-  camera.fx = camera.fy = focal_length(options);
-  camera.cx = camera.cy = (options.resolution - 1) / 2.0;
+  camera.width = options.resolution;
+  camera.height = options.height;
+  camera.fx = camera.fy = options.focal;
+  camera.cx = (camera.width - 1) / 2.0;
+  camera.cy = (camera.height - 1) / 2.0;
   const Vector3d to_object = Vector3d::Constant(0.5);  // from the world origin
   std::vector<View> views(options.views);
   for (int k = 0; k < options.views; ++k) {
+    views[k].name = std::to_string(k) + "_colors.png";
+    views[k].camera = camera;
+    if (options.kind == RigKind::kHemisphere) {
+      views[k].cam_from_world = held_by_hand(options, k, seed);
+      continue;
+    }
     const Vector3d d = direction(options, k, seed);
     // Where the ray from the object leaves the sphere |to_object + s d| = distance.
     const double b = to_object.dot(d);
     const double s =
         -b + std::sqrt(b * b - to_object.squaredNorm() + options.distance * options.distance);
-    views[k].name = std::to_string(k) + "_colors.png";
-    views[k].camera = camera;
-    views[k].cam_from_world = looking_at_origin(s * d);
+    views[k].cam_from_world = looking_at(Vector3d::Zero(), s * d);
   }
   return views;
 }

@@ -65,10 +65,7 @@ float smoothstep(float low, float high, float x) {
   return t * t * (3 - 2 * t);
 }
 
-float fresnel(float cosine) {  // Schlick, "An inexpensive BRDF model", 1994
-  const float m = 1 - std::clamp(cosine, 0.0f, 1.0f);
-  return kMirror + (1 - kMirror) * m * m * m * m * m;
-}
+float fresnel(float cosine) { return schlick(kMirror, cosine); }
 
 // Light of the surroundings in a direction: a sky above a dark floor.
 float surroundings(const Vector3f& direction) {
@@ -76,31 +73,15 @@ float surroundings(const Vector3f& direction) {
          0.2f * std::max(0.0f, direction.z());
 }
 
-// Microfacets of Walter et al., "Microfacet models for refraction through rough surfaces", 2007
-// (GGX), with the visibility term of Schlick's approximation.
 float highlight(const Lamp& lamp, const SurfacePoint& s) {
   const Vector3f to = lamp.position - s.point;
   const float d2 = to.squaredNorm();
   const Vector3f l = to / std::sqrt(d2), h = (l + s.to_eye).normalized();
-  const float nl = s.normal.dot(l), nv = std::max(1e-3f, s.normal.dot(s.to_eye));
-  if (nl <= 0) return 0;
-  const float nh = std::max(0.0f, s.normal.dot(h)), a2 = kRoughness * kRoughness;
-  const float base = nh * nh * (a2 - 1) + 1, k = kRoughness / 2;
-  const float d = a2 / (float(M_PI) * base * base);
-  const float visible = 1 / (4 * (nl * (1 - k) + k) * (nv * (1 - k) + k));
-  return d * visible * fresnel(s.to_eye.dot(h)) * float(M_PI) * nl * falloff(lamp, d2);
+  return microfacets(s.normal, s.to_eye, l, kRoughness, fresnel(s.to_eye.dot(h))) *
+         falloff(lamp, d2);
 }
 
 // ------------------------------------------------------------------------------------- patterns
-
-// A rotation drawn evenly. Shoemake, "Uniform random rotations", Graphics Gems III, 1992.
-Eigen::Matrix3f rotation(std::uint64_t bits) {
-  const float u = float(uniform(bits)), a = float(2 * M_PI * uniform(mix(bits))),
-              b = float(2 * M_PI * uniform(mix(mix(bits))));
-  const float r = std::sqrt(1 - u), t = std::sqrt(u);
-  return Eigen::Quaternionf(t * std::cos(b), r * std::sin(a), r * std::cos(a), t * std::sin(b))
-      .toRotationMatrix();
-}
 
 // Printed lines: one in each cell, of its own place, width and blackness.
 float lines(const Vector3f& q, std::uint64_t bits) {
@@ -129,28 +110,54 @@ float wood(const Vector3f& q) {
   return 0.12f + 0.5f * at * at * at;
 }
 
-// Balls of ink in space, one in each cell and inside of it, so that a point asks its own cell only.
-float speckles(const Vector3f& q, std::uint64_t seed) {
-  constexpr float kCell = 0.06f;
-  const Eigen::Vector3i cell = (q / kCell).array().floor().cast<int>();
-  std::uint64_t bits = seed;
-  for (int i = 0; i < 3; ++i) bits = mix(bits ^ std::uint64_t(std::int64_t(cell[i]) + 1000));
-  const auto next = [&bits] { return float(uniform(bits = mix(bits))); };
-  const float radius = kCell * (0.25f + 0.25f * next());
-  Vector3f middle;
-  for (int i = 0; i < 3; ++i)
-    middle[i] = float(cell[i]) * kCell + radius + (kCell - 2 * radius) * next();
-  return (q - middle).squaredNorm() < radius * radius ? 0.3f + 0.4f * next() : 0.0f;
-}
+constexpr float kSpeckleCell = 0.06f;
 
 bool is_printed(Style style) { return style == Style::kTextured || style == Style::kSpeckled; }
 
 }  // namespace
 
+// Shoemake, "Uniform random rotations", Graphics Gems III, 1992.
+Eigen::Matrix3f drawn_rotation(std::uint64_t bits) {
+  const float u = float(uniform(bits)), a = float(2 * M_PI * uniform(mix(bits))),
+              b = float(2 * M_PI * uniform(mix(mix(bits))));
+  const float r = std::sqrt(1 - u), t = std::sqrt(u);
+  return Eigen::Quaternionf(t * std::cos(b), r * std::sin(a), r * std::cos(a), t * std::sin(b))
+      .toRotationMatrix();
+}
+
+float speckles(const Vector3f& q, float side, std::uint64_t seed) {
+  const Eigen::Vector3i cell = (q / side).array().floor().cast<int>();
+  std::uint64_t bits = seed;
+  for (int i = 0; i < 3; ++i) bits = mix(bits ^ std::uint64_t(std::int64_t(cell[i]) + 1000));
+  const auto next = [&bits] { return float(uniform(bits = mix(bits))); };
+  const float radius = side * (0.25f + 0.25f * next());
+  Vector3f middle;
+  for (int i = 0; i < 3; ++i)
+    middle[i] = float(cell[i]) * side + radius + (side - 2 * radius) * next();
+  return (q - middle).squaredNorm() < radius * radius ? 0.3f + 0.4f * next() : 0.0f;
+}
+
+float schlick(float straight, float cosine) {
+  const float m = 1 - std::clamp(cosine, 0.0f, 1.0f);
+  return straight + (1 - straight) * m * m * m * m * m;
+}
+
+float microfacets(const Vector3f& normal, const Vector3f& to_eye, const Vector3f& to_lamp,
+                  float roughness, float fresnel) {
+  const Vector3f h = (to_lamp + to_eye).normalized();
+  const float nl = normal.dot(to_lamp), nv = std::max(1e-3f, normal.dot(to_eye));
+  if (nl <= 0) return 0;
+  const float nh = std::max(0.0f, normal.dot(h)), a2 = roughness * roughness;
+  const float base = nh * nh * (a2 - 1) + 1, k = roughness / 2;
+  const float d = a2 / (float(M_PI) * base * base);
+  const float visible = 1 / (4 * (nl * (1 - k) + k) * (nv * (1 - k) + k));
+  return d * visible * fresnel * float(M_PI) * nl;
+}
+
 Print::Print(int faces, std::uint64_t seed) : patterns_(faces) {
   for (int face = 0; face < faces; ++face) {
     const std::uint64_t bits = hash(seed, std::uint64_t(face), 0, 50);
-    patterns_[face] = {bits, rotation(mix(bits))};
+    patterns_[face] = {bits, drawn_rotation(mix(bits))};
   }
 }
 
@@ -175,7 +182,7 @@ Shader::Shader(const Tracer& tracer, const Tracer* clutter, const Look& look, st
       even_(float(look.even_light)),
       seed_(seed),
       lift_(float(lift)),
-      stone_(rotation(hash(seed, 0, 0, 52))),
+      stone_(drawn_rotation(hash(seed, 0, 0, 52))),
       print_(style_ == Style::kTextured ? tracer.num_faces() : 0, seed),
       clutter_print_(clutter ? clutter->num_faces() : 0, mix(seed)) {}
 
@@ -212,7 +219,7 @@ float Shader::object(const SurfacePoint& s, float u, float v) const {
     case Style::kTextured:
       return kAlbedo * matt(s) * (1 - strength_ * print_.ink(s.point, s.face));
     case Style::kSpeckled:
-      return kAlbedo * matt(s) * (1 - strength_ * speckles(stone_ * s.point, seed_));
+      return kAlbedo * matt(s) * (1 - strength_ * speckles(stone_ * s.point, kSpeckleCell, seed_));
     case Style::kDark:
       return kDarkAlbedo * kDarkLight * matt(s);
     case Style::kGlossy:

@@ -16,6 +16,7 @@ enum class Style {
   kDark,      ///< dark matt object under little light
   kGlossy,    ///< highlights of the lamps, and the sky mirrored
   kShadowed,  ///< one strong small lamp whose shadows are cast
+  kPhoto,     ///< no matter of shading alone: a photograph of a part on a table, see PhotoOptions
 };
 
 /// How an object looks.
@@ -50,6 +51,23 @@ struct SurfacePoint {
   Eigen::Vector3f to_eye;                       ///< unit
   int face = 0;
 };
+
+/// Share of the light that balls of ink in space take away, in [0, 0.7]; one in each cell of side
+/// `cell` and inside of it.
+float speckles(const Eigen::Vector3f& point, float cell, std::uint64_t seed);
+
+/// A rotation drawn evenly.
+Eigen::Matrix3f drawn_rotation(std::uint64_t bits);
+
+/// Microfacets of Walter et al., "Microfacet models for refraction through rough surfaces", 2007
+/// (GGX), with the visibility term of Schlick's approximation: what a rough mirror sends to the eye
+/// of the light from a direction, times pi and the cosine; all unit. `fresnel` is what the mirror
+/// sends back.
+float microfacets(const Eigen::Vector3f& normal, const Eigen::Vector3f& to_eye,
+                  const Eigen::Vector3f& to_lamp, float roughness, float fresnel);
+
+/// Schlick, "An inexpensive BRDF model", 1994: of a mirror that sends back `straight` head-on.
+float schlick(float straight, float cosine);
 
 /// What light a surface sends to the eye: linear, grey, 1 is the white of the picture. Five lamps
 /// and a sky stand still in the unit frame.

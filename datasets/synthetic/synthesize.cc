@@ -5,8 +5,11 @@
 #include <cctype>
 
 #include "datasets/errors.h"
+#include "datasets/synthetic/april_tag.h"
 #include "datasets/synthetic/mesh_part.h"
 #include "datasets/synthetic/parts.h"
+#include "datasets/synthetic/photo_painter.h"
+#include "datasets/synthetic/photo_world.h"
 #include "datasets/synthetic/visibility.h"
 
 namespace sketchsplat {
@@ -28,7 +31,8 @@ void check(const SynthesizeOptions& o) {
   require("views", o.rig.views, 1, 100000);
   require("resolution", o.rig.resolution, 16, 8192);
   require("focal length", o.rig.focal, 0, 1e6);
-  require("distance", o.rig.distance, 1.6, 1000);
+  if (o.rig.height != 0) require("height", o.rig.height, 16, 8192);
+  if (o.rig.distance != 0) require("distance", o.rig.distance, 1.6, 1000);
   require("elevation", o.rig.elevation_deg, -85, 85);
   require("object size", o.rig.object_size, 0, 10);
   require("spread", o.rig.spread_deg, 1, 180);
@@ -41,6 +45,10 @@ void check(const SynthesizeOptions& o) {
   require("background", o.render.background, 0, 1);
   require("pose noise", o.degrade.pose_noise_px, 0, 100);
   require("focal error", o.degrade.focal_error_percent, -50, 50);
+  require("distortion", o.photo.distortion, 0, 3);
+  require("pose error", o.photo.pose_error_px, 0, 50);
+  require("tag", o.photo.tag, -1, tag36h11_count() - 1);
+  require("tag size", o.photo.tag_size, 0, o.extent);
   require("missing", o.degrade.missing, 0, 1);
   require("truncated", o.degrade.truncated, 0, 1);
   parse_outputs(o.outputs);
@@ -99,17 +107,27 @@ void scale(double factor, Image<float>* image) {
 
 }  // namespace
 
-SyntheticScene synthesize(const SynthesizeOptions& options) {
-  check(options);
+SyntheticScene synthesize(const SynthesizeOptions& given) {
+  check(given);
+  SynthesizeOptions options = given;
+  const bool photographs = options.render.style == Style::kPhoto;
+  options.rig = resolved(options.rig, photographs);
   auto [surface, truth, cad] = make_object(options);
   if (truth.curves.empty()) throw InputError(options.part, "a part with sharp edges", "none");
   const Tracer tracer(surface);
-  const std::vector<View> unit_views = make_rig(options.rig, options.seed);
+  std::vector<View> unit_views = make_rig(options.rig, options.seed);
   const double lift = std::max(2e-4, 10 * options.deflection);
   std::vector<TruthCurve>& curves = truth.curves;
+  std::shared_ptr<const PhotoWorld> photo;
+  if (photographs) {
+    photo = std::make_shared<const PhotoWorld>(make_photo_world(options, surface));
+    make_photo_views(options, *photo, &unit_views);
+    for (TruthCurve& curve : curves) lift_off_table(*photo, 2 * lift, &curve);
+  }
+  const Tracer& all = photo ? photo->tracer : tracer;
   const int n = int(curves.size());
 #pragma omp parallel for schedule(dynamic)
-  for (int i = 0; i < n; ++i) count_views(tracer, unit_views, lift, &curves[i]);
+  for (int i = 0; i < n; ++i) count_views(all, unit_views, lift, &curves[i]);
   const Vector3d shift = Vector3d::Constant(0.5 * options.extent);
   return {options,
           transformed(truth, options.extent, shift),
@@ -119,6 +137,7 @@ SyntheticScene synthesize(const SynthesizeOptions& options) {
           all_points(truth),
           tracer,
           options.render.clutter ? clutter_behind(unit_views, options.seed) : nullptr,
+          photo,
           lift,
           cad};
 }
@@ -126,6 +145,15 @@ SyntheticScene synthesize(const SynthesizeOptions& options) {
 RenderedView render_view(const SyntheticScene& scene, int view) {
   const RenderOptions& options = scene.options.render;
   const std::uint64_t seed = scene.options.seed;
+  if (scene.photo) {
+    RenderedView out;
+    const PhotoShader shader(*scene.photo, {scene.options.photo.surface, seed}, scene.lift);
+    out.picture = paint_photo(*scene.photo, shader, scene.unit_curves, scene.unit_views[view], seed,
+                              view);
+    out.mask = std::move(out.picture.alpha);
+    expose_photo(options, seed, view, &out.picture);
+    return out;
+  }
   const Tracer* behind = scene.clutter ? &scene.clutter->tracer : nullptr;
   const Look look{options.style, options.texture_strength, options.even_light};
   const Shader shader(scene.tracer, behind, look, seed, scene.lift);

@@ -12,6 +12,8 @@
 #include "datasets/synthetic/degrade.h"
 #include "datasets/synthetic/outputs.h"
 #include "datasets/synthetic/part_table.h"
+#include "datasets/synthetic/photo_light.h"
+#include "datasets/synthetic/photo_options.h"
 #include "datasets/synthetic/render.h"
 #include "datasets/synthetic/rig.h"
 #include "datasets/synthetic/tracer.h"
@@ -30,6 +32,7 @@ struct SynthesizeOptions {
   double deflection = 2e-5;  ///< of the triangles that are rendered [extents], [1e-6, 1e-2]
   RigOptions rig;
   RenderOptions render;
+  PhotoOptions photo;  ///< of Style::kPhoto
   DegradeOptions degrade;
   std::string outputs = "all";  ///< what is written beside the images: see parse_outputs
 };
@@ -43,7 +46,7 @@ struct CadModel {
 
 /// A part, its true edges and its cameras. The object's box is centred at (0.5, 0.5, 0.5) extents.
 struct SyntheticScene {
-  SynthesizeOptions options;
+  SynthesizeOptions options;               ///< the rig resolved()
   Truth truth;                             ///< world units
   std::vector<View> views;                 ///< world units
   std::vector<View> unit_views;            ///< the same in the unit frame, where rendering happens
@@ -51,6 +54,7 @@ struct SyntheticScene {
   Eigen::Matrix3Xd hints;                  ///< 3 x N  points along all edges, unit frame
   Tracer tracer;                           ///< the mesh, unit frame
   std::shared_ptr<const Clutter> clutter;  ///< what stands behind it; null if nothing
+  std::shared_ptr<const PhotoWorld> photo;  ///< of Style::kPhoto; unit frame
   double lift = 0;  ///< how far rays that leave the surface start above it, unit lengths
   std::shared_ptr<const CadModel> cad;
 };
@@ -59,7 +63,8 @@ struct SyntheticScene {
 /// lies outside its range.
 SyntheticScene synthesize(const SynthesizeOptions& options);
 
-/// One view, its image and what is known about its pixels.
+/// One view, its image and what is known about its pixels. Of a photograph: the picture before it
+/// is compressed, and the mask; the other maps are empty.
 struct RenderedView {
   Picture picture;
   Image<float> mask;  ///< coverage by the object, in [0, 1], neither blurred nor noisy
@@ -74,7 +79,8 @@ struct RenderedView {
 RenderedView render_view(const SyntheticScene& scene, int view);
 Picture render(const SyntheticScene& scene, int view);  ///< its picture alone
 
-/// Writes a scene folder in the layout of ABC-NEF as EMAP ships it:
+/// Writes a scene folder: write_photos() for Style::kPhoto, else in the layout of ABC-NEF as EMAP
+/// ships it:
 ///   meta_data.json (last, so that a folder that has it is whole), color/<k>_colors.png,
 ///   groundtruth/gt.json: list of {"type", "closed", "points": [[x, y, z], ...],
 ///     "visible_views": [n, ...] one per point, "dihedral_deg"},
@@ -86,5 +92,8 @@ Picture render(const SyntheticScene& scene, int view);  ///< its picture alone
 ///   pieces of the true edges, whose "curve" counts the entries of gt.json.
 /// Views are rendered in parallel (OpenMP). Throws OutputError.
 void write_scene(const SyntheticScene& scene, const std::string& folder);
+
+/// What is in a folder that write_scene() has finished, written last.
+inline constexpr const char* kLastFiles[] = {"meta_data.json", "scene.json"};
 
 }  // namespace sketchsplat

@@ -9,6 +9,11 @@
 #include <limits>
 
 namespace sketchsplat {
+namespace {
+
+constexpr int kPacket = 8;  // rays that are traced at once
+
+}  // namespace
 
 struct Tracer::Impl {
   RTCDevice device = nullptr;
@@ -79,7 +84,6 @@ Hit Tracer::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction
 
 void Tracer::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f* directions, int n,
                   Hit* hits) const {
-  constexpr int kPacket = 8;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -124,6 +128,27 @@ bool Tracer::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) con
   ray.mask = ~0u;
   rtcOccluded1(impl_->scene, &context, &ray);
   return ray.tfar < 0;
+}
+
+int Tracer::count_visible(const Eigen::Vector3f& from, const Eigen::Vector3f* to, int n) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  int visible = 0;
+  for (int first = 0; first < n; first += kPacket) {
+    alignas(32) int valid[kPacket];
+    alignas(32) RTCRay8 rays{};
+    for (int i = 0; i < kPacket; ++i) {
+      valid[i] = first + i < n ? -1 : 0;
+      const Eigen::Vector3f d = to[std::min(first + i, n - 1)] - from;
+      rays.org_x[i] = from.x(), rays.org_y[i] = from.y(), rays.org_z[i] = from.z();
+      rays.dir_x[i] = d.x(), rays.dir_y[i] = d.y(), rays.dir_z[i] = d.z();
+      rays.tfar[i] = 1.0f;
+      rays.mask[i] = ~0u;
+    }
+    rtcOccluded8(valid, impl_->scene, &context, &rays);
+    for (int i = 0; i < kPacket && first + i < n; ++i) visible += rays.tfar[i] >= 0;
+  }
+  return visible;
 }
 
 }  // namespace sketchsplat

@@ -27,6 +27,8 @@ class Tracer {
   int num_faces() const;  ///< Hit::face is less
   /// Something lies on the way from one point to the other.
   bool blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+  /// Of how many of `n` points nothing lies on the way from `from`; neighbours lie side by side.
+  int count_visible(const Eigen::Vector3f& from, const Eigen::Vector3f* to, int n) const;
 
  private:
   struct Impl;

@@ -133,8 +133,10 @@ void draw_segment(const Vector2d& a, const Vector2d& b, Image<float>* image) {
 bool sees(const View& view, const Tracer& tracer, const Vector3d& point, const Vector3d& outward,
           double lift) {
   double depth;
-  const Vector2d pixel = view.project(point, &depth);
-  if (!(depth > 0) || !view.camera.contains(pixel)) return false;
+  Vector2d pixel;
+  if (!view.image_pixel(view.project(point, &depth), &pixel) || !(depth > 0) ||
+      !view.camera.contains(pixel))
+    return false;
   const Vector3d eye = view.center_in_world();
   const Vector3d way = outward.isZero() ? Vector3d((eye - point).normalized()) : outward;
   const Vector3d start = point + lift * way;

@@ -12,10 +12,12 @@
 
 #include "datasets/errors.h"
 #include "datasets/scene.h"
+#include "datasets/synthetic/synthesize.h"
 #include "pipelines/atomic_file.h"
-#include "pipelines/bench/child.h"
 #include "pipelines/bench/machine.h"
+#include "pipelines/child.h"
 #include "pipelines/cli.h"
+#include "pipelines/hash.h"
 
 namespace sketchsplat {
 namespace {
@@ -80,16 +82,6 @@ double decode_seconds(const Scene& scene) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
-std::string reason_of(const ChildResult& child, double timeout_seconds) {
-  if (child.timed_out) return "took longer than " + std::to_string(timeout_seconds) + " s";
-  std::string text = child.last_words;
-  if (text.rfind("sketchsplat: ", 0) == 0) text = text.substr(13);
-  if (child.status >= 128)
-    text =
-        "ended by signal " + std::to_string(child.status - 128) + (text.empty() ? "" : ": " + text);
-  return text.empty() ? "exit status " + std::to_string(child.status) : text;
-}
-
 // Failures that more runs would only repeat.
 void check_environment(const ChildResult& child) {
   if (child.status == kNoOutput) throw OutputError("bench", child.last_words);
@@ -143,8 +135,9 @@ std::string Measurer::key(const BenchJob& job) const {
 
 bool Measurer::make_scene(const BenchJob& job, BenchRow* row) {
   const std::string folder = scene_folder(job);
-  // The file is written last: where it is, the scene is whole.
-  if (!job.folder.empty() || fs::exists(folder + "/meta_data.json")) return true;
+  if (!job.folder.empty()) return true;
+  for (const char* last : kLastFiles)
+    if (fs::exists(folder + "/" + last)) return true;
   std::vector<std::string> arguments = {"synthesize", "--quiet", "--out", folder};
   const std::vector<std::string> flags = flags_of(job.synthesize, synthesize_fields_);
   arguments.insert(arguments.end(), flags.begin(), flags.end());

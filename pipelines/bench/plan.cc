@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/bench/plan.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "datasets/synthetic/rig.h"
@@ -73,13 +74,16 @@ void add_runs(const Suite& suite, const BenchJob& scene, const OptionTexts& with
 }  // namespace
 
 double object_pixels(const OptionTexts& synthesize) {
-  const RigOptions defaults;
-  const double resolution = number_of(synthesize, "resolution", defaults.resolution);
-  const double size = number_of(synthesize, "object-size", 0);
-  if (size > 0) return size * resolution;
-  const double given = number_of(synthesize, "focal", 0);
-  const double focal = given > 0 ? given : 1111.1113654242622 / 800 * resolution;
-  return focal / number_of(synthesize, "distance", defaults.distance);
+  RigOptions rig;
+  rig.resolution = int(number_of(synthesize, "resolution", rig.resolution));
+  rig.object_size = number_of(synthesize, "object-size", rig.object_size);
+  rig.focal = number_of(synthesize, "focal", rig.focal);
+  rig.distance = number_of(synthesize, "distance", rig.distance);
+  const bool photographs = std::find(synthesize.begin(), synthesize.end(),
+                                     std::pair<std::string, std::string>("style", "photo")) !=
+                           synthesize.end();
+  rig = resolved(rig, photographs);
+  return rig.focal / rig.distance;
 }
 
 std::vector<BenchLevel> plan_jobs(const Suite& suite, const BenchAxis* axis,

@@ -9,6 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/errors.h"
+#include "eval/csv.h"
+#include "pipelines/version.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace {
@@ -65,13 +68,6 @@ std::vector<std::string> number_names(const std::vector<BenchRow>& rows) {
 std::string padded(const std::string& text, size_t width, bool left) {
   const std::string space(width > text.size() ? width - text.size() : 0, ' ');
   return left ? text + space : space + text;
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
 }
 
 BenchRow row_of(const Json& object) {
@@ -163,8 +159,8 @@ std::string bench_csv(const std::vector<BenchRow>& rows) {
   for (const std::string& name : numbers) csv += "," + name;
   csv += "\n";
   for (const BenchRow& row : rows) {
-    csv += quoted(row.scene) + "," + quoted(row.variant);
-    for (const std::string& name : labels) csv += "," + quoted(row.label(name));
+    csv += csv_cell(row.scene) + "," + csv_cell(row.variant);
+    for (const std::string& name : labels) csv += "," + csv_cell(row.label(name));
     for (const std::string& name : numbers) {
       const double value = row.number(name);
       csv += "," + (std::isfinite(value) ? text_of_number(value, "%.9g") : "");
@@ -176,7 +172,7 @@ std::string bench_csv(const std::vector<BenchRow>& rows) {
 
 std::string bench_json(const std::vector<BenchRow>& rows, const std::string& suite) {
   Json out = {{"program", "sketchsplat"},
-              {"version", SKETCHSPLAT_VERSION},
+              {"version", program_version()},
               {"suite", suite},
               {"rows", Json::array()}};
   for (const BenchRow& row : rows) {
@@ -192,8 +188,12 @@ std::string bench_json(const std::vector<BenchRow>& rows, const std::string& sui
 std::vector<BenchRow> read_bench_json(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return {};
-  // Ordered: columns stay where they are.
-  const Json json = Json::parse(in, nullptr, false);
+  Json json;  // ordered: columns stay where they are
+  try {
+    json = parse_json<Json>(in, path);
+  } catch (const Json::exception&) {
+    // said below
+  }
   if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array())
     throw InputError(path, "results of sketchsplat bench", "something else");
   std::vector<BenchRow> rows;

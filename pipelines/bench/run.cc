@@ -77,11 +77,7 @@ void place(const BenchJob& job, BenchRow* row) {
   row->variant = job.variant;
   row->set("axis", job.axis ? job.axis->name : "");
   row->set("at", job.level);
-  if (job.axis && !job.level.empty()) {
-    char* end = nullptr;
-    const double level = std::strtod(job.level.c_str(), &end);
-    if (*end == '\0') row->set("level", level);
-  }
+  if (const auto level = level_number(job.level); job.axis && level) row->set("level", *level);
 }
 
 std::string result_folder(const BenchRun& run, const BenchJob& job) {

@@ -199,7 +199,8 @@ BenchAxis axis_of(const Place& place) {
     place.complain("'against' where report is 'exponent', and only there", "'" + axis.name + "'");
   if (!place.has("vary") && axis.against.empty()) place["vary"];
   if (axis.report == AxisReport::kDrop || axis.in_pixels)
-    for (const Place& level : place["levels"].elements()) level.number(-1e12, 1e12);
+    for (const Place& level : place["levels"].elements())
+      if (axis.in_pixels || !level_number(level.text())) level.number(-1e12, 1e12);
   axis.scenes = scenes_of(place);
   if (place.has("part-seeds")) axis.part_seeds = seeds_of(place["part-seeds"]);
   if (place.has("synthesize")) axis.synthesize = place["synthesize"].options();
@@ -273,6 +274,14 @@ class OptionCheck {
 };
 
 }  // namespace
+
+std::optional<double> level_number(const std::string& level) {
+  if (level == "true" || level == "false") return level == "true" ? 1 : 0;
+  char* end = nullptr;
+  const double number = std::strtod(level.c_str(), &end);
+  if (level.empty() || *end != '\0') return std::nullopt;
+  return number;
+}
 
 Suite read_suite(const std::string& path) {
   YAML::Node node;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,8 @@ struct BenchAxis {
   std::string name, title;
   bool of_reconstruct = false;      ///< the option is one of reconstruct, else of synthesize
   std::string option;               ///< "noise", or "param.gap": --param gap=LEVEL
-  std::vector<std::string> levels;  ///< from harmless to hopeless, as options' values
+  std::vector<std::string> levels;  ///< from harmless to hopeless, as options' values; numbers, or
+                                    ///< true and false, where accuracy is to fall
   bool in_pixels = false;  ///< levels are pixels of the image; the option is a share of the object
   bool log = false;        ///< levels are compared by their ratio
   AxisReport report = AxisReport::kDrop;
@@ -70,6 +72,10 @@ struct Suite {
   double collapse_f5 = 20;  ///< an axis ends when no part is above it [per cent]
   bool keep = false;        ///< the results of the runs, too, not their numbers alone
 };
+
+/// What stands for a level in tables and charts: its number, 1 for "true", 0 for "false"; nothing
+/// for any other text.
+std::optional<double> level_number(const std::string& level);
 
 /// Reads a suite file (YAML or JSON; the format is in README.md under "Suites"). Paths in it are
 /// relative to it. Throws InputError (the file, the line, what was expected, what was found).

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "datasets/errors.h"
+#include "datasets/far_views.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {
@@ -187,6 +188,55 @@ TEST(OpenScene, FramesThatCannotBeUsedAreNamed) {
   }
 }
 
+TEST(OpenScene, FramesOutOfAllBoundsAreLeftOut) {
+  EXPECT_THAT(warning_about(abc_frame("b.png", "[[1,0,0,1e308],[0,1,0,0],[0,0,1,0],[0,0,0,1]]")),
+              AllOf(HasSubstr("b.png"), HasSubstr("too large")));
+}
+
+/// Four cameras one unit around the place, and a fifth: how many views are kept.
+size_t views_kept(double fifth, double unit) {
+  const TempFolder folder;
+  std::string frames;
+  const double x[] = {-1, 1, 0, 0, fifth}, y[] = {0, 0, -1, 1, 0};
+  for (int k = 0; k < 5; ++k) {
+    const std::string name = std::to_string(k) + ".png";
+    write_image(folder, "color/" + name);
+    frames += (k ? "," : "") + abc_frame(name, "[[1,0,0," + std::to_string(x[k] * unit) +
+                                                   "],[0,1,0," + std::to_string(y[k] * unit) +
+                                                   "],[0,0,1,0],[0,0,0,1]]");
+  }
+  folder.write("meta_data.json", abc_scene(frames));
+  const Scene scene = open_scene(folder.path());
+  EXPECT_EQ(scene.views.size() + scene.warnings.size(), 5u);
+  for (const std::string& warning : scene.warnings)
+    EXPECT_THAT(warning, AllOf(HasSubstr("4.png"), HasSubstr("too far away")));
+  return scene.views.size();
+}
+
+TEST(OpenScene, ACameraThatIsTooFarAwayToSeeTheOthersIsLeftOutWhateverTheUnit) {
+  for (const double unit : {1e-3, 1.0, 1e6}) {
+    EXPECT_EQ(views_kept(15, unit), 5u);
+    EXPECT_EQ(views_kept(25, unit), 4u) << "the others around one pixel of its image";
+    EXPECT_EQ(views_kept(1e60, unit), 4u);
+  }
+}
+
+TEST(LeaveOutFarViews, PointsKeepTheViewsThatStay) {
+  Scene scene;
+  for (const double x : {-1.0, 1e9, 1.0, 0.5, 2.0}) {
+    View view;
+    view.name = std::to_string(x);
+    view.camera = {16, 12, 20, 20, 7.5, 5.5};
+    view.cam_from_world.translation.x() = -x;
+    scene.views.push_back(view);
+  }
+  scene.points = {{Eigen::Vector3d::Zero(), {0, 1, 4}}, {Eigen::Vector3d::Zero(), {1}}};
+  leave_out_far_views(&scene);
+  ASSERT_EQ(scene.views.size(), 4u);
+  EXPECT_THAT(scene.points[0].views, ElementsAre(0, 3));
+  EXPECT_THAT(scene.points[1].views, IsEmpty());
+}
+
 TEST(OpenScene, PosesThatAreAlmostRotationsAreMadeRotations) {
   const TempFolder folder;
   write_image(folder, "color/a.png");
@@ -269,6 +319,18 @@ TEST(OpenScene, WhatIsNoJsonIsSaidInOneLineWithItsPath) {
   EXPECT_THAT(error_of("transforms_train.json", ""),
               AllOf(HasSubstr("transforms_train.json"), HasSubstr("a JSON file")));
   EXPECT_THAT(error_of("meta_data.json", "\xff\xfe binary \x01"), HasSubstr("a JSON file"));
+}
+
+TEST(OpenScene, BracketsByTheThousandAreSaidInOneLine) {
+  const std::string open(200000, '['), close(200000, ']');
+  for (const std::string& text : {open, open + close, "{\"frames\": " + open + close + "}",
+                                  "{\"frames\": [{\"rgb_path\": " + open + close + "}]}"})
+    EXPECT_THAT(error_of("meta_data.json", text),
+                AllOf(HasSubstr("meta_data.json"), HasSubstr("at most 100 arrays"),
+                      HasSubstr("found 20000")));
+  EXPECT_THAT(error_of("meta_data.json", "{\"frames\": \"" + open + "\"}"),
+              HasSubstr("an array in frames"))
+      << "brackets in texts are harmless";
 }
 
 TEST(OpenScene, WordsLikeNanInsideOfTextAreLeftAlone) {

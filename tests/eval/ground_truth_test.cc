@@ -203,6 +203,7 @@ TEST(FindGroundTruth, TellsWhatIsWrong) {
   broken("gt.json", R"([{"type": "line", "points": [[0,0,0],[0,0,0]]}])");
   broken("gt.json", R"([{"type": "line", "points": 5}])");
   broken("gt.json", R"({"scale": 0, "offset": [0,0,0], "curves": []})");
+  broken("gt.json", std::string(200000, '[') + std::string(200000, ']'));
   broken("gt.txt", "");
   broken("samples.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n");
 }
@@ -228,6 +229,7 @@ TEST(FindGroundTruth, TellsWhatIsWrongWithAbcFiles) {
   broken("curves: 5\n");
   broken("curves:\n- type: Line\n");
   broken("curves:\n- [unclosed\n");
+  broken("curves:\n- " + std::string(200000, '[') + std::string(200000, ']') + "\n");
   broken("curves:\n- {type: BSpline, sharp: true, vert_indices: [7, 8]}\n");
   broken(
       "curves:\n- {type: Line, sharp: false, vert_indices: [0, 1], vert_parameters: [0.0, 1.0],"

@@ -130,6 +130,7 @@ TEST(ReadPrediction, TellsWhatIsWrong) {
   broken(R"({"lines": [[1,2,3,4,5]]})");
   broken(R"({"lines": [[1,2,3,4,5,"six"]]})");
   broken(R"({"curves": [[[0,0,0],[1,0,0],[1,1,0]]]})");
+  broken(R"({"lines": )" + std::string(200000, '[') + std::string(200000, ']') + "}");
   EXPECT_THROW(read_prediction(folder.path("nothing.json")), InputError);
   EXPECT_THROW(read_prediction(folder.write("a.txt", "")), InputError);
   std::filesystem::create_directories(folder.path("empty"));

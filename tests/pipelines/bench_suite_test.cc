@@ -82,6 +82,22 @@ axes: [{name: wall, vary: synthesize.blur, levels: [20, 10], pixels: true}]
   // ABC-NEF's camera at 400 px shows a length of 1 at a distance of 4 as 1111.11 / 2 / 4 px.
   EXPECT_NEAR(std::stod(levels[0][0].synthesize.back().second), 20 / 138.889, 1e-4);
   EXPECT_NEAR(object_pixels({{"object-size", "0.5"}, {"resolution", "300"}}), 150, 1e-9);
+  EXPECT_NEAR(object_pixels({{"style", "photo"}, {"resolution", "960"}}), 1.15 * 960 / 2.6, 1e-9);
+}
+
+TEST(Suite, LevelsOfADropAreNumbersOrTrueAndFalse) {
+  EXPECT_EQ(level_number("0.25"), 0.25);
+  EXPECT_EQ(level_number("true"), 1);
+  EXPECT_EQ(level_number("false"), 0);
+  EXPECT_FALSE(level_number("some").has_value());
+  EXPECT_FALSE(level_number("").has_value());
+  const TempFolder folder;
+  const std::string axis = "parts: [box]\naxes: [{name: a, vary: synthesize.masks, levels: ";
+  const Suite suite = suite_of_text(folder, axis + "[true, false]}]");
+  const std::vector<BenchLevel> levels = plan_jobs(suite, &suite.axes[0], {});
+  EXPECT_THAT(flags_of(levels[1][0].synthesize, synthesize_verb().fields),
+              testing::Contains("--no-masks"));
+  EXPECT_THROW(suite_of_text(folder, axis + "[true, perhaps]}]"), InputError);
 }
 
 TEST(Flags, AreWhatAUserWouldType) {

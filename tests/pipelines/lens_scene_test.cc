@@ -5,6 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/errors.h"
 #include "sketches/curve.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/colmap_files.h"
@@ -63,32 +64,65 @@ double covered(const Sketch& a, const Sketch& b, double distance) {
   return p.empty() ? 0 : double(near) / double(p.size());
 }
 
-TEST(LensScene, ALensChangesThePicturesButNotTheCurves) {
-  const TempFolder folder, bent;
-  write_part("box-hole", 30, 400, 2, folder.path());
-  const Scene scene = open_scene(folder.path());
-  write_colmap_binary(colmap_of(scene, kTerms), bent.path() + "/sparse/0");
-  Lens::Terms terms;
-  terms.k1 = kTerms[0], terms.k2 = kTerms[1], terms.p1 = kTerms[2], terms.p2 = kTerms[3];
-  for (View view : scene.views) {
-    view.lens = Lens(LensModel::kOpencv, terms);
-    write_png(bent.file("images/" + view.name), bend(read_picture(view), view));
+// A part, and the same pictures as a lens would have drawn them, as a model of COLMAP.
+struct BentPart {
+  TempFolder folder, bent;
+  Scene straight_scene, bent_scene;
+  BentPart(int views, int resolution) {
+    write_part("box-hole", views, resolution, 2, folder.path());
+    straight_scene = open_scene(folder.path());
+    write_colmap_binary(colmap_of(straight_scene, kTerms), bent.path() + "/sparse/0");
+    Lens::Terms terms;
+    terms.k1 = kTerms[0], terms.k2 = kTerms[1], terms.p1 = kTerms[2], terms.p2 = kTerms[3];
+    for (View view : straight_scene.views) {
+      view.lens = Lens(LensModel::kOpencv, terms);
+      write_png(bent.file("images/" + view.name), bend(read_picture(view), view));
+    }
+    bent_scene = open_scene(bent.path());
   }
+};
+
+ReconstructOptions fast() {
   ReconstructOptions options;
   apply_preset("fast", &options);
-  const Sketch straight = reconstruct(scene, options, nullptr).sketch;
-  const Scene with_lens = open_scene(bent.path());
-  ASSERT_EQ(with_lens.views.size(), scene.views.size());
-  const Sketch curves = reconstruct(with_lens, options, nullptr).sketch;
+  return options;
+}
+
+TEST(LensScene, ALensChangesThePicturesButNotTheCurves) {
+  const BentPart part(30, 400);
+  const Sketch straight = reconstruct(part.straight_scene, fast(), nullptr).sketch;
+  ASSERT_EQ(part.bent_scene.views.size(), part.straight_scene.views.size());
+  const Sketch curves = reconstruct(part.bent_scene, fast(), nullptr).sketch;
   EXPECT_EQ(curves.size(), straight.size());
   EXPECT_GT(covered(straight, curves, 0.003), 0.99);
   EXPECT_GT(covered(curves, straight, 0.003), 0.99);
 
   // The same curves are not there for those who do not know the lens.
-  Scene forgotten = with_lens;
+  Scene forgotten = part.bent_scene;
   for (View& view : forgotten.views) view.lens = Lens();
-  const Sketch wrong = reconstruct(forgotten, options, nullptr).sketch;
+  const Sketch wrong = reconstruct(forgotten, fast(), nullptr).sketch;
   EXPECT_LT(covered(straight, wrong, 0.003), 0.85);
+}
+
+TEST(LensScene, SurfelsAreFittedToPicturesWithoutIt) {
+  const BentPart part(20, 300);
+  ReconstructOptions options = fast();
+  options.detector = "2dgs-sn";
+  options.surfel_snap_px = 0;  // what the surfels alone show
+  const Sketch curves = reconstruct(part.bent_scene, options, nullptr).sketch;
+  EXPECT_GT(f_at(score(curves, part.folder.path()).fine, 0.005), 85);
+}
+
+TEST(LensScene, DepthMapsOfViewsWithDistortionAreRefused) {
+  const BentPart part(3, 64);
+  ReconstructOptions options = fast();
+  options.detector = "geometry";
+  try {
+    reconstruct(part.bent_scene, options, nullptr);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("colmap image_undistorter"));
+  }
 }
 
 }  // namespace

@@ -44,11 +44,17 @@ class Program : public testing::Test {
   Outcome run(const std::string& arguments) const { return run_in(folder_, arguments); }
 
   static Outcome run_in(const fs::path& folder, const std::string& arguments) {
-    const std::string out = (folder / "out").string(), err = (folder / "err").string();
+    const std::string id = std::to_string(getpid());  // the folder may be everybody's
+    const std::string out = (folder / ("stdout." + id)).string();
+    const std::string err = (folder / ("stderr." + id)).string();
     const std::string command = std::string("'") + SKETCHSPLAT_BINARY + "' " + arguments + " >'" +
                                 out + "' 2>'" + err + "' </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of_file(out), text_of_file(err)};
+    const Outcome outcome = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of_file(out),
+                             text_of_file(err)};
+    fs::remove(out);
+    fs::remove(err);
+    return outcome;
   }
 
   // Two views of a white square on black.

@@ -153,6 +153,9 @@ TEST(SketchJson, RefusesWhatIsNoJson) {
         good + "}", std::string("\xff\xfe\0\0", 4), std::string("{\"format_version\": NaN}")})
     EXPECT_THAT(complaint(text), StartsWith("a/sketch.json: expected a sketch as JSON, found "));
   EXPECT_THAT(complaint("[]"), HasSubstr("an object as the file, found array"));
+  const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+  EXPECT_THAT(complaint(deep), HasSubstr("in one another, found 200000"));
+  EXPECT_THAT(complaint(changed([&](auto& j) { j["nodes"] = "[[["; })), HasSubstr("nodes"));
 }
 
 TEST(SketchJson, RefusesAnotherVersion) {

@@ -259,7 +259,7 @@ TEST(Rig, RandomCamerasLookEverywhereAndObjectSizeIsWhatItSays) {
   Vector3d mean = Vector3d::Zero();
   for (const View& view : make_rig(options, 3)) {
     mean += view.center_in_world().normalized() / options.views;
-    EXPECT_NEAR(view.camera.fx / options.distance, 0.5 * options.resolution, 1e-9);
+    EXPECT_NEAR(view.camera.fx / resolved(options, false).distance, 0.5 * options.resolution, 1e-9);
   }
   EXPECT_LT(mean.norm(), 0.1);
 }

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+# What is installed, and where; and the Debian package that `cpack -G DEB` makes of it.
+include(GNUInstallDirs)
+
+# The program looks for what it loads in ../lib/sketchsplat beside itself: see plugin_path.cc.
+install(TARGETS sketchsplat RUNTIME DESTINATION bin COMPONENT program)
+install(TARGETS sketchsplat_charts sketchsplat_image_formats sketchsplat_synthesis
+  LIBRARY DESTINATION lib/sketchsplat COMPONENT program)
+
+# Pages and completions are what the program itself says.
+set(written ${CMAKE_BINARY_DIR}/generated/share)
+file(MAKE_DIRECTORY ${written})
+function(write_by_program file option)
+  add_custom_command(OUTPUT ${written}/${file} DEPENDS sketchsplat VERBATIM
+    COMMAND sketchsplat ${option} ${ARGN} > ${written}/${file})
+  set(written_files ${written_files} ${written}/${file} PARENT_SCOPE)
+endfunction()
+write_by_program(sketchsplat.1 --man)
+write_by_program(sketchsplat --completion bash)
+write_by_program(_sketchsplat --completion zsh)
+write_by_program(sketchsplat.fish --completion fish)
+add_custom_command(OUTPUT ${written}/sketchsplat.1.gz DEPENDS ${written}/sketchsplat.1 VERBATIM
+  COMMAND gzip -9nc ${written}/sketchsplat.1 > ${written}/sketchsplat.1.gz)
+add_custom_target(pages ALL DEPENDS ${written_files} ${written}/sketchsplat.1.gz)
+
+install(FILES ${written}/sketchsplat.1.gz DESTINATION share/man/man1 COMPONENT program)
+install(FILES ${written}/sketchsplat DESTINATION share/bash-completion/completions
+  COMPONENT program)
+install(FILES ${written}/_sketchsplat DESTINATION share/zsh/vendor-completions COMPONENT program)
+install(FILES ${written}/sketchsplat.fish DESTINATION share/fish/vendor_completions.d
+  COMPONENT program)
+install(FILES README.md OPTIONS.md CHANGELOG.md docs/batch.md cmake/copyright
+  DESTINATION share/doc/sketchsplat COMPONENT program)
+install(PROGRAMS eval/abc_nef_table.py DESTINATION share/sketchsplat COMPONENT program)
+install(PROGRAMS scripts/slurm/array.sh scripts/slurm/merge.sh scripts/slurm/one_node.sh
+  scripts/slurm/submit.sh DESTINATION share/sketchsplat/slurm COMPONENT program)
+
+set(CPACK_PACKAGE_NAME sketchsplat)
+set(CPACK_PACKAGE_VENDOR "sketchsplat contributors")
+set(CPACK_PACKAGE_CONTACT "sketchsplat contributors <nobody@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "edges of CAD objects from calibrated images, as exact curves")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL program)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap, slurm-wlm, parallel, python3")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+  "Photographs or renderings of a CAD object with known cameras become its\n\
+ edges: lines, arcs, circles, ellipses and splines that share their\n\
+ corners, as STEP, OBJ and JSON. On a CPU, without training; whole folders\n\
+ of scenes with one command.")
+include(CPack)

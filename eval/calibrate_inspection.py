@@ -1,0 +1,283 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Fits SigmaOptions of eval/inspect/sigma_model.h and says how far the probabilities of `inspect`
+can be relied on.
+
+Makes scenes of the built-in parts (24 views of 400 x 400 px) with exact poses and with poses that
+err as those that a tracker finds in photographs, and reconstructs them. Of two parts of three it
+takes how far every curve is from the truth, and fits the numbers so that it surprises least (--fit;
+written to WORK/calibration.json). Then it asks, by tenths of what is stated,
+
+ - known: how often what was measured lies within the tolerance of the truth;
+ - within: every second edge of the truth is moved by up to three tolerances, and that is taken as
+   nominal. How often is the truth, inspected by the same program, within tolerance, of the edges of
+   which the result says so with that probability?
+
+Scenes and results that are there already are used again: a run may be stopped and started.
+
+  eval/calibrate_inspection.py --binary build/pipelines/sketchsplat --work DIR [--fit]
+"""
+
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+
+import numpy as np
+
+PARTS = """box box-hole plate-holes stepped-shaft l-bracket pocket-block box-fillet box-chamfer
+slotted-sheet cut-cylinder frustum hex-nut dome-plate flange tee u-channel rib-plate slot-block tray
+bent-sheet fillet-block fillet-step ridge-block crease-disc countersunk-plate oblique-hole
+ellipse-plate boss-plate corner-block slot-disc knob keyed-hub elbow groove-shaft ball-stud
+dished-cap cross-drilled spline-plate wave-block loft-grip swept-rail freeform-pad
+ridge-cylinder""".split()
+FITTED = [k % 3 != 2 for k in range(len(PARTS))]
+
+VIEWS = "--views 24 --resolution 400 --object-size 0.7 --noise 3 --outputs none".split()
+CONDITIONS = {"exact poses": [], "poses off by 0.2 px": ["--pose-noise", "0.2"],
+              "poses off by 0.5 px": ["--pose-noise", "0.5"]}
+TOLERANCES = [0.0002, 0.0005, 0.001]  # of the longest side, which is 1
+
+
+def run(arguments, allowed=(0,)):
+    done = subprocess.run(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if done.returncode not in allowed:
+        sys.exit(" ".join(arguments) + "\n" + done.stderr)
+    return done.returncode
+
+
+class Scene:
+    def __init__(self, work, part, condition, seed):
+        name = f"{part}.{condition.replace(' ', '-')}.{seed}"
+        self.part, self.condition, self.seed = part, condition, seed
+        self.scene, self.result = f"{work}/scenes/{name}", f"{work}/results/{name}"
+        self.truth = self.scene + "/groundtruth/sketch.json"
+        self.inspections = f"{work}/inspections/{name}"
+
+    def make(self, binary):
+        if not os.path.exists(self.scene + "/meta_data.json"):
+            run([binary, "synthesize", self.part, "--out", self.scene, "-q", "--seed",
+                 str(self.seed)] + VIEWS + CONDITIONS[self.condition])
+        if not os.path.exists(self.result + "/sketch.json"):
+            run([binary, "reconstruct", self.scene, "--out", self.result, "-q", "--overlays", "0"],
+                (0, 4))
+        return os.path.exists(self.result + "/sketch.json")
+
+    def inspect(self, binary, measured, nominal, name, tolerance, options=()):
+        """inspection.json of a sketch against a nominal part, best fit."""
+        out = f"{self.inspections}/{name}"
+        run([binary, "inspect", measured, "--nominal", nominal, "--tolerance", str(tolerance),
+             "--scale", "1", "--overlays", "0", "-q", "--out", out] + list(options), (0, 7))
+        with open(out + "/inspection.json") as file:
+            return json.load(file)
+
+
+def pieces_of(scene, binary):
+    """How far every edge is off at some places, and what was known about it."""
+    scene.inspect(binary, scene.result, scene.truth, "pieces", 0.001, ["--pieces"])
+    with open(scene.inspections + "/pieces/inspection_pieces.json") as file:
+        pieces = [p for p in json.load(file)["pieces"] if p["presence"] == "found"]
+    return [p for p in pieces if len(p["deviation"]) == 2 * PLACES]
+
+
+PLACES = 5  # of a piece
+NORMAL = np.random.default_rng(1).standard_normal((400, 2 * PLACES))  # draws of its errors
+REACHES = np.array([0.1, 0.2, 0.35, 0.5, 0.75, 1, 1.5, 2.5]) / 1000
+FLOOR_PX = 0.003
+
+# SigmaOptions, where the fit starts.
+START = {"straight_factor": 0.3, "straight_power": 0.5, "straight_place": 0.3,
+         "straight_views": 0.2, "curved_factor": 0.8, "curved_power": 0.5, "curved_place": 0.1,
+         "curved_views": 0.1, "place_px": 0.003, "curvature_px2": 1.2, "tail_share": 0.1,
+         "straight_tail": 3, "curved_tail": 2.5}
+
+
+def arrays_of(pieces):
+    n = 2 * PLACES
+    of = lambda key: np.array([p[key] for p in pieces], float)
+    shift = of("shift").reshape(-1, n, 3)
+    deviation = of("deviation")
+    return {"straight": np.array([p["kind"] == "line" for p in pieces]),
+            "largest": np.hypot(deviation[:, ::2], deviation[:, 1::2]).max(axis=1),
+            "covariance": of("covariance").reshape(-1, n, n),
+            "shift": shift @ shift.transpose(0, 2, 1), "bend": of("bend"),
+            "footprint": of("footprint"), "sigma": of("sigma"),
+            "bias": of("bias_px"), "views": of("view_bias_px")}
+
+
+def probabilities(p, x):
+    """That the largest error of each piece is within each of REACHES, as SigmaModel says."""
+    of_kind = lambda name: np.where(x["straight"], p["straight_" + name], p["curved_" + name])
+    px2 = x["footprint"] ** 2
+    ratio = np.maximum(x["bias"], 0.004) * x["footprint"] / x["sigma"]
+    own = (of_kind("factor") * ratio ** of_kind("power")) ** 2
+    place = px2 * ((of_kind("place") * x["bias"]) ** 2 + (of_kind("views") * x["views"]) ** 2 +
+                   p["place_px"] ** 2)
+    bend = p["curvature_px2"] * x["bend"]
+    v = (own[:, None, None] * x["covariance"] + place[:, None, None] * x["shift"] +
+         bend[:, :, None] * bend[:, None, :] +
+         (FLOOR_PX ** 2 * px2)[:, None, None] * np.eye(2 * PLACES))
+    draws = NORMAL @ np.linalg.cholesky(v).transpose(0, 2, 1)
+    largest = np.sqrt((draws[:, :, ::2] ** 2 + draws[:, :, 1::2] ** 2).max(axis=2))
+    share = p["tail_share"]
+    return np.array([(1 - share) * (largest <= r).mean(axis=1) +
+                     share * (largest * of_kind("tail")[:, None] <= r).mean(axis=1)
+                     for r in REACHES]).T
+
+
+def score(p, x):
+    """Mean log probability of what is the case: is the piece within each of REACHES or not?"""
+    stated = np.clip(probabilities(p, x), 0.003, 0.997)
+    return np.where(x["largest"][:, None] <= REACHES, np.log(stated), np.log(1 - stated)).mean()
+
+
+def fit(sets):
+    """Each parameter in turn, in steps that get smaller; the conditions count alike."""
+    mean = lambda p: np.mean([score(p, x) for x in sets])
+    best, value = dict(START), -np.inf
+    for step in [1.6, 1.25, 1.1, 1.04]:
+        for _ in range(6):
+            before = value
+            for name in START:
+                for factor in (step, 1 / step):
+                    trial = {**best, name: best[name] * factor}
+                    usable = trial["tail_share"] < 0.5 and min(
+                        trial["straight_tail"], trial["curved_tail"]) >= 1
+                    there = mean(trial) if usable else -np.inf
+                    if there > value + 2e-5:
+                        best, value = trial, there
+            if value == before:
+                break
+    return best, value
+
+
+def move(point, shift):
+    return [p + s for p, s in zip(point, shift)]
+
+
+def moved_truth(truth, edges, tolerance, seed, path):
+    """The truth with every second edge moved as a whole, by up to three tolerances."""
+    draw = random.Random(seed)
+    with open(truth) as file:
+        sketch = json.load(file)
+    nodes, strokes = [], []
+    for edge in edges:
+        shift = np.array([draw.gauss(0, 1) for _ in range(3)])
+        shift *= draw.choice([0, 3]) * tolerance * draw.random() / np.linalg.norm(shift)
+        new = {}
+        for stroke in [sketch["strokes"][c] for c in edge["curves"]]:
+            for node in stroke["nodes"]:
+                if node not in new:
+                    new[node] = len(nodes)
+                    nodes.append(move(sketch["nodes"][node], shift))
+            closed = stroke["kind"] in ("circle", "ellipse")  # all but the first handle are vectors
+            handles = [h if closed and k > 0 else move(h, shift)
+                       for k, h in enumerate(stroke["handles"])]
+            strokes.append({"kind": stroke["kind"], "nodes": [new[n] for n in stroke["nodes"]],
+                            "handles": handles})
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w") as file:
+        json.dump({"format_version": 1, "nodes": nodes, "strokes": strokes}, file)
+
+
+def known_edges(scene, binary, options):
+    """(tolerance, P stated, is it so): what was measured lies within tolerance of what is there."""
+    rows = []
+    for tolerance in TOLERANCES:
+        for e in scene.inspect(binary, scene.result, scene.truth, "known", tolerance,
+                               options)["edges"]:
+            if e["presence"] == "found":
+                rows.append((tolerance, e["known"], e["largest"] <= tolerance))
+    return rows
+
+
+def judged_edges(scene, binary, options, draws):
+    """(tolerance, P stated, is it so): what is there lies within tolerance of nominal."""
+    rows = []
+    edges = scene.inspect(binary, scene.truth, scene.truth, "truth", 0.001)["edges"]
+    for tolerance in TOLERANCES:
+        for k in range(draws):
+            nominal = f"{scene.inspections}/nominal/sketch.json"
+            moved_truth(scene.truth, edges, tolerance,
+                        f"{scene.part} {scene.seed} {tolerance} {k}", nominal)
+            stated = scene.inspect(binary, scene.result, nominal, "stated", tolerance, options)
+            true = scene.inspect(binary, scene.truth, nominal, "true", tolerance)
+            for s, t in zip(stated["edges"], true["edges"]):
+                if s["presence"] == "found" and t["presence"] == "found":
+                    rows.append((tolerance, s["probability"], t["largest"] <= tolerance))
+    return rows
+
+
+def reliability(title, rows):
+    """Prints a table by tenths, and the worst difference among tenths of 50 edges and more."""
+    if not rows:
+        return
+    p = np.array([r[1] for r in rows])
+    y = np.array([r[2] for r in rows], float)
+    print(f"\n{title}: {len(rows)} edges, {100 * y.mean():.1f} % within tolerance, "
+          f"Brier {np.mean((p - y) ** 2):.4f} (base rate alone {np.mean((y.mean() - y) ** 2):.4f})")
+    print("  P stated    edges  mean P  within  difference")
+    worst = 0
+    for k in range(10):
+        at = (p >= k / 10) & ((p < (k + 1) / 10) | (k == 9))
+        if not at.any():
+            continue
+        difference = y[at].mean() - p[at].mean()
+        print(f"  {k / 10:.1f}-{(k + 1) / 10:.1f}  {at.sum():8d}  {p[at].mean():6.3f}  "
+              f"{y[at].mean():6.3f}  {difference:+.3f}")
+        if at.sum() >= 50:
+            worst = max(worst, abs(difference))
+    print(f"  largest difference of a tenth with 50 edges and more: {worst:.3f}")
+
+
+def report(condition, scenes, fitted, binary, options, draws):
+    of = [s for s in scenes if s.condition == condition]
+    for name, ask in [("known", lambda s: known_edges(s, binary, options)),
+                      ("within", lambda s: judged_edges(s, binary, options, draws))]:
+        rows = {s: ask(s) for s in of}
+        everything = [r for s in of for r in rows[s]]
+        for tolerance in TOLERANCES:
+            reliability(f"{name}, {condition}, tolerance {1000 * tolerance:g} thousandths",
+                        [r for r in everything if r[0] == tolerance])
+        reliability(f"{name}, {condition}, all", everything)
+        held = [r for s in of if s.part not in fitted for r in rows[s]]
+        if held:
+            reliability(f"{name}, {condition}, parts that were not fitted", held)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--binary", required=True)
+    parser.add_argument("--work", required=True, help="folder of scenes, results and inspections")
+    parser.add_argument("--seeds", type=int, default=1, help="of each part")
+    parser.add_argument("--draws", type=int, default=1, help="of moved nominal parts")
+    parser.add_argument("--parts", nargs="*", default=PARTS)
+    parser.add_argument("--fit", action="store_true", help="fit, and use what was fitted")
+    parser.add_argument("--scenes-only", action="store_true")
+    arguments = parser.parse_args()
+    binary = arguments.binary
+    scenes = [Scene(arguments.work, part, condition, seed + 1) for condition in CONDITIONS
+              for seed in range(arguments.seeds) for part in arguments.parts]
+    scenes = [s for s in scenes if s.make(binary)]
+    if arguments.scenes_only:
+        return
+    fitted = {part for part, use in zip(PARTS, FITTED) if use}
+    options = []
+    if arguments.fit:
+        sets = [arrays_of([piece for s in scenes if s.condition == condition and s.part in fitted
+                           for piece in pieces_of(s, binary)]) for condition in CONDITIONS]
+        best, value = fit(sets)
+        print(f"log probability of an event {value:.4f}: " +
+              ", ".join(f"{n} {v:.3g}" for n, v in best.items()))
+        path = arguments.work + "/calibration.json"
+        with open(path, "w") as file:
+            json.dump({n: float(f"{v:.3g}") for n, v in best.items()}, file, indent=1)
+        options = ["--calibration", path]
+    for condition in CONDITIONS:
+        report(condition, scenes, fitted, binary, options, arguments.draws)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eval/inspect/alignment.h"
+#include "eval/inspect/association.h"
+#include "eval/inspect/tolerance.h"
+#include "sketches/sketch.h"
+
+namespace sketchsplat {
+
+/// From what the edgels say of a stroke to how far off it is. The numbers are fitted by
+/// eval/calibrate_inspection.py, see docs/inspect.md.
+struct SigmaOptions {
+  /// Of lines, then of all other curves. Sigma over that of the covariance: factor (b /
+  /// sigma)^power, b the length by which the stroke's views disagree. The covariance knows the
+  /// shape of the error; its size is of all strokes together, and knows nothing of the regularities
+  /// that average errors away.
+  double straight_factor = 0.27, straight_power = 0.43;
+  double curved_factor = 0.87, curved_power = 0.4;
+  /// By which a stroke is off as a whole, in each direction: shares of b and of the b of all
+  /// strokes.
+  double straight_place = 0.3, straight_views = 0.22;
+  double curved_place = 0.03, curved_views = 0.09;
+  double place_px = 0.001;  ///< [px] and always
+  /// [px^2] over the radius of curvature [px]: by so much a curve lies nearer to, or farther from,
+  /// its centre of curvature, because blurred edges do.
+  double curvature_px2 = 1.5;
+  double tail_share = 0.1;     ///< of strokes are worse
+  double straight_tail = 3.5;  ///< by so much
+  double curved_tail = 2.2;
+  double scale_percent = 0;  ///< [%] standard deviation of the scale
+};
+
+/// The fitted ones, by name.
+std::vector<std::pair<std::string, double*>> named_numbers(SigmaOptions* options);
+
+/// Everything that errors are made of. Lengths in the nominal's unit.
+struct SigmaModel {
+  SigmaOptions options;
+  double footprint = 0;  ///< length of a pixel at the part; 0 if nobody knows: no errors in px
+  double bias_px = 0;    ///< by which views disagree: median over the strokes
+  const Alignment* alignment = nullptr;
+
+  double factor(const Stroke& stroke, const Evidence& evidence) const;
+  double wide(StrokeKind kind) const;  ///< sigma of the worse ones over the others'
+  double place(const Stroke& stroke,
+               const Evidence& evidence) const;  ///< by which it is off as a whole
+};
+
+/// Median over the strokes of what their views disagree by; 0 if there are none.
+double typical_bias_px(const Sketch& measured);
+
+/// Covariance of the control points of a stroke (3 n square), calibrated. Without a covariance, of
+/// its sigma alone.
+Eigen::MatrixXd calibrated_covariance(const Sketch& measured, int stroke, const SigmaModel& sigma);
+
+/// Does the stroke have directions that no edgel determines? They have variance 0, which means
+/// nothing.
+bool is_open(const Sketch& measured, int stroke);
+
+/// Derivative of the unit tangent by arc length: towards the centre of curvature, 1 / radius long.
+Eigen::Vector3d curvature_at(const Sketch& sketch, int stroke, double t);
+
+/// Two unit vectors across a unit tangent, as rows.
+Eigen::Matrix<double, 2, 3> frame_across(const Eigen::Vector3d& tangent);
+
+/// By how much a curve may be off towards its centre of curvature, for each px^2 of
+/// SigmaOptions::curvature_px2, at most a pixel; zero of lines and without a footprint.
+Eigen::Vector3d bend_at(const Sketch& measured, int stroke, double t, double footprint);
+
+/// Errors at some places of one stroke that were measured beside a nominal edge.
+struct PieceErrors {
+  DeviationModel model;
+  double wide = 1;        ///< with the probability of tails, modes are so many times as large
+  double sigma = 0;       ///< largest standard deviation, from the edgels
+  double systematic = 0;  ///< the same, from what edgels do not know: place, curvature, scale, pose
+};
+/// `places`: of one stroke; `held`: the edge held the pose. Else errors of the pose are added.
+PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& places, bool held,
+                         const SigmaModel& sigma);
+
+}  // namespace sketchsplat

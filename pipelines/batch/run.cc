@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/batch/run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <list>
+#include <memory>
+
+#include "datasets/errors.h"
+#include "pipelines/batch/scene_input.h"
+#include "pipelines/batch/signals.h"
+#include "pipelines/batch/worker.h"
+#include "pipelines/bench/plan.h"
+#include "pipelines/estimate.h"
+#include "pipelines/hash.h"
+#include "pipelines/resources.h"
+#include "pipelines/version.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr double kMemoryShare = 0.9;     // of what is available
+constexpr double kPatienceSeconds = 60;  // with a scene whose size is asked for
+constexpr double kTickSeconds = 10;      // between looks at workers, if nothing happens
+
+void list_all(ReconstructOptions* method, OutputOptions* output, Fields* fields) {
+  fields->add("seed", &method->seed, "", 0, HUGE_VAL, "");
+  list_fields(method, fields);
+  list_fields(output, fields);
+}
+
+// The options of reconstruct that differ from what the preset says, as a command line.
+std::vector<std::string> worker_flags(const BatchRun& run) {
+  ReconstructOptions method = run.method, preset;
+  OutputOptions output = run.output, usual;
+  apply_preset(method.preset, &preset);
+  Fields wanted, known;
+  list_all(&method, &output, &wanted);
+  list_all(&preset, &usual, &known);
+  OptionTexts texts = {{"preset", method.preset}};
+  for (size_t i = 0; i < wanted.list.size(); ++i)
+    if (text_of(wanted.list[i]) != text_of(known.list[i]))
+      texts.push_back({wanted.list[i].name, text_of(wanted.list[i])});
+  std::vector<std::string> flags = flags_of(texts, wanted.list);
+  if (!run.format.empty()) flags.insert(flags.end(), {"--format", run.format});
+  flags.insert(flags.end(), {"--threads", std::to_string(run.threads)});
+  return flags;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc = {};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+std::string host_name() {
+  char name[65] = {};
+  gethostname(name, sizeof name - 1);
+  return name;
+}
+
+// Starts workers, looks after them, and writes down how they ended.
+class Coordinator {
+ public:
+  Coordinator(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, const BatchRun& run,
+              const BatchStore& store, Progress* progress)
+      : scenes_(scenes),
+        plan_(plan),
+        run_(run),
+        store_(store),
+        progress_(progress),
+        schedule_(plan.loads, plan.jobs, plan.memory_mb),
+        settings_{worker_flags(run), run.memory_mb, run.timeout_seconds},
+        attempts_(plan.open.size()) {
+    for (const Load& load : plan.loads) all_seconds_ += load.seconds;
+  }
+
+  // Nothing half done stays, whatever ends us.
+  ~Coordinator() {
+    for (Work& work : workers_) {
+      work.worker.reset();
+      try {
+        store_.forget_running(scene(work.piece).scene.name);
+      } catch (const std::exception&) {
+        // the next batch will
+      }
+    }
+  }
+
+  void work() {
+    KeptSignals signals;
+    Stage stage("batch", int(plan_.open.size()), nullptr, progress_);
+    for (;;) {
+      start_what_fits();
+      if (workers_.empty()) break;
+      const int signal = signals.wait(pause());
+      if (signal != 0 && signal != SIGCHLD) interrupt(signal);
+      while (look_after_workers(&stage)) start_what_fits();
+    }
+    stage.result(std::to_string(plan_.open.size() - failed_) + " scenes" +
+                 (failed_ > 0 ? ", " + std::to_string(failed_) + " failed" : ""));
+  }
+
+ private:
+  struct Work {
+    int piece;  // of plan.open
+    std::unique_ptr<SceneWorker> worker;
+  };
+
+  const PlannedScene& scene(int piece) const { return scenes_[plan_.open[piece]]; }
+
+  void start_what_fits() {
+    for (int piece; (piece = schedule_.next()) >= 0;) {
+      workers_.push_back({piece, nullptr});
+      ++attempts_[piece];
+      workers_.back().worker =
+          std::make_unique<SceneWorker>(scene(piece).scene, scene(piece).key, settings_, store_);
+    }
+  }
+
+  // Until somebody takes too long.
+  double pause() const {
+    double seconds = kTickSeconds;
+    if (settings_.timeout_seconds > 0)
+      for (const Work& work : workers_)
+        seconds = std::min(seconds, settings_.timeout_seconds - work.worker->seconds());
+    return seconds;
+  }
+
+  // Whether one of them has ended.
+  bool look_after_workers(Stage* stage) {
+    for (auto work = workers_.begin(); work != workers_.end(); ++work) {
+      if (!work->worker->advance()) continue;
+      const int piece = work->piece;
+      const std::unique_ptr<SceneWorker> worker = std::move(work->worker);
+      workers_.erase(work);
+      schedule_.ended(piece, worker->run().peak_mb);
+      if (worker->was_struck() && attempts_[piece] <= run_.retries)
+        schedule_.again(piece);
+      else
+        write_down(piece, worker->run(), stage);
+      return true;
+    }
+    return false;
+  }
+
+  void write_down(int piece, RunRecord record, Stage* stage) {
+    const std::string& name = scene(piece).scene.name;
+    record.key = scene(piece).key;
+    record.attempts = attempts_[piece];
+    record.host = host_name();
+    record.ended = utc_now();
+    store_.write(record, name);
+    ++ended_;
+    done_seconds_ += plan_.loads[piece].seconds;
+    if (all_seconds_ > 0) progress_->share(done_seconds_ / all_seconds_);
+    stage->step();
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.1f s", record.seconds);
+    if (record.status == 0)
+      progress_->tell("[" + std::to_string(ended_) + "/" + std::to_string(plan_.open.size()) +
+                      "] " + name + ": " + seconds);
+    else
+      progress_->warn(name + ": " + record.reason);
+    failed_ += record.status != 0;
+  }
+
+  [[noreturn]] void interrupt(int signal) {
+    throw Interrupted(signal, "interrupted: " + std::to_string(ended_ - failed_) + " of " +
+                                  std::to_string(plan_.open.size()) +
+                                  " scenes were done; the same command does the rest");
+  }
+
+  const std::vector<PlannedScene>& scenes_;
+  const BatchPlan& plan_;
+  const BatchRun& run_;
+  const BatchStore& store_;
+  Progress* progress_;
+  Schedule schedule_;
+  const WorkerSettings settings_;
+  std::vector<int> attempts_;
+  std::list<Work> workers_;
+  int ended_ = 0, failed_ = 0;
+  double all_seconds_ = 0, done_seconds_ = 0;
+};
+
+}  // namespace
+
+std::string batch_options_json(const BatchRun& run) {
+  ReconstructOptions method = run.method;
+  OutputOptions output = run.output;
+  Fields fields;
+  list_all(&method, &output, &fields);
+  return fields_json(fields.list);
+}
+
+std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, const BatchRun& run) {
+  const std::string program = program_version() + "\n" + program_commit() + "\n" + run.format +
+                              "\n" + batch_options_json(run);
+  std::vector<PlannedScene> planned;
+  for (const BatchScene& scene : scenes) {
+    SceneKey key = {hash_of(program), input_hash(scene.folder)};
+    // A truth may lie elsewhere; one that comes later is worth another run.
+    if (!key.input.empty() && has_truth(scene.folder)) key.input += "+truth";
+    planned.push_back({scene, key});
+  }
+  return planned;
+}
+
+BatchPlan plan_batch(const std::vector<PlannedScene>& scenes, const BatchRun& run,
+                     Progress* progress) {
+  BatchPlan plan;
+  std::vector<BatchScene> open;
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    if (!run.force && is_done(run.out + "/" + scenes[i].scene.name, scenes[i].key)) continue;
+    plan.open.push_back(int(i));
+    open.push_back(scenes[i].scene);
+  }
+  if (open.empty()) return plan;
+  Stage stage("look", int(open.size()), nullptr, progress);
+  for (const SceneSize& size :
+       scene_sizes(open, run.format, kPatienceSeconds, [&] { stage.step(); }))
+    plan.loads.push_back(expected_load(size.views, size.pixels, run.method, run.threads));
+  const int places = run.jobs > 0 ? run.jobs : std::max(1, usable_cores() / run.threads);
+  plan.jobs = std::min(places, int(open.size()));
+  plan.memory_mb = run.jobs > 0 ? HUGE_VAL : kMemoryShare * usable_memory_mb();
+  stage.result(std::to_string(open.size()) + " of " + std::to_string(scenes.size()) +
+               " scenes to do, " + std::to_string(plan.jobs) + " at a time");
+  return plan;
+}
+
+double expected_seconds(const BatchPlan& plan) {
+  double sum = 0, longest = 0;
+  for (const Load& load : plan.loads) {
+    sum += load.seconds;
+    longest = std::max(longest, load.seconds);
+  }
+  return std::max(longest, sum / plan.jobs);
+}
+
+void run_batch(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, const BatchRun& run,
+               const BatchStore& store, Progress* progress) {
+  for (const PlannedScene& scene : scenes) store.check_place(scene.scene.name);
+  Coordinator(scenes, plan, run, store, progress).work();
+}
+
+}  // namespace sketchsplat

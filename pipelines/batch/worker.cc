@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/batch/worker.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "datasets/errors.h"
+#include "pipelines/batch/scene_input.h"
+#include "pipelines/cli.h"
+
+namespace sketchsplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder that begins with a dash must not be taken for an option.
+std::string as_argument(const std::string& folder) {
+  return folder[0] == '-' ? "./" + folder : folder;
+}
+
+// An output error that no other scene would escape.
+bool is_everybodys(const std::string& words) {
+  for (const int error : {ENOSPC, EDQUOT, EROFS, EIO, EMFILE, ENFILE})
+    if (words.find(std::strerror(error)) != std::string::npos) return true;
+  return false;
+}
+
+// A signal that processes do not give themselves.
+bool was_sent(int status) {
+  return status == 128 + SIGKILL || status == 128 + SIGTERM || status == 128 + SIGINT ||
+         status == 128 + SIGHUP;
+}
+
+}  // namespace
+
+SceneWorker::SceneWorker(const BatchScene& scene, const SceneKey& key,
+                         const WorkerSettings& settings, const BatchStore& store)
+    : scene_(scene), key_(key), settings_(settings), store_(store) {
+  std::vector<std::string> arguments = {"reconstruct", as_argument(scene_.folder), "--out",
+                                        store_.make_running(scene_.name)};
+  arguments.insert(arguments.end(), settings_.flags.begin(), settings_.flags.end());
+  start(arguments, store_.make_notes(scene_.name) + "/reconstruct.log");
+}
+
+void SceneWorker::start(const std::vector<std::string>& arguments, const std::string& log) {
+  child_ = std::make_unique<Child>(arguments, log, settings_.memory_mb);
+}
+
+double SceneWorker::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
+bool SceneWorker::advance() {
+  if (!child_->ended()) {
+    if (settings_.timeout_seconds <= 0 || seconds() < settings_.timeout_seconds) return false;
+    timed_out_ = true;
+    child_->kill();
+    child_->wait();
+  }
+  ChildResult result = child_->result();
+  result.timed_out = timed_out_ && result.status != 0;
+  run_.cpu_seconds += result.cpu_seconds;
+  run_.peak_mb = std::max(run_.peak_mb, result.peak_mb);
+  run_.seconds = seconds();
+  return evaluating_ ? after_evaluation(result) : after_reconstruction(result);
+}
+
+bool SceneWorker::after_reconstruction(const ChildResult& result) {
+  if (result.status != 0) {
+    fail(result);
+    return true;
+  }
+  if (begin_evaluation()) return false;
+  finish("", "");
+  return true;
+}
+
+bool SceneWorker::after_evaluation(const ChildResult& result) {
+  if (result.status == 0)
+    finish(evaluation(), "");
+  else if (was_sent(result.status) && !timed_out_)
+    fail(result);  // another attempt will get a score
+  else
+    finish("", "no score: " + reason_of(result, settings_.timeout_seconds));
+  return true;
+}
+
+bool SceneWorker::was_struck() const { return was_sent(run_.status) && !timed_out_; }
+
+bool SceneWorker::begin_evaluation() {
+  if (!has_truth(scene_.folder)) return false;
+  evaluating_ = true;
+  start({"evaluate", "--pred", store_.running(scene_.name), "--gt", as_argument(scene_.folder),
+         "--json", evaluation(), "--quiet"},
+        store_.notes(scene_.name) + "/evaluate.log");
+  return true;
+}
+
+void SceneWorker::finish(const std::string& evaluation, const std::string& note) {
+  const std::string folder = store_.running(scene_.name);
+  try {
+    SceneRecord record = make_record(folder, evaluation);
+    record.key = key_;
+    record.note = note;
+    write_record(folder, record);
+  } catch (const InputError& e) {
+    ChildResult defect;
+    defect.status = kDefect;
+    defect.last_words = e.what();
+    fail(defect);
+    return;
+  }
+  store_.publish(scene_.name);
+  for (const char* name : {"reconstruct.log", "evaluate.log", "evaluation.json"})
+    if (note.empty() || std::strcmp(name, "evaluate.log") != 0)
+      std::remove((store_.notes(scene_.name) + "/" + name).c_str());
+}
+
+void SceneWorker::fail(const ChildResult& result) {
+  run_.status = result.status;
+  run_.reason = reason_of(result, settings_.timeout_seconds);
+  if (result.status == kNoOutput && is_everybodys(run_.reason))
+    throw OutputError(store_.result(scene_.name), run_.reason);
+  store_.forget_running(scene_.name);
+  store_.withdraw(scene_.name);
+}
+
+}  // namespace sketchsplat
