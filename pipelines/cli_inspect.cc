@@ -19,6 +19,7 @@
 #include "pipelines/overlay.h"
 #include "pipelines/sketch_input.h"
 #include "pipelines/synthesis_plugin.h"
+#include "pipelines/version.h"
 #include "sketches/curve.h"
 #include "sketches/length_unit.h"
 
@@ -209,7 +210,7 @@ Inspection inspect_one(const std::string& result, const NominalFile& file,
   const std::string folder = folder_of(result, a, alone);
   prepare_output_folder(folder);
   remove_old_overlays(folder);
-  *title = {result, a.nominal, length_unit_names()[int(a.unit)], a.scale, SKETCHSPLAT_VERSION};
+  *title = {result, a.nominal, length_unit_names()[int(a.unit)], a.scale, program_version()};
   write_inspection(
       folder, inspection, file.nominal, a.inspect, *title,
       draw_worst(folder, inspection, file.nominal, scene, scale, a.overlays, progress));
