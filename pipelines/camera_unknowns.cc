@@ -4,7 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+
+#include "datasets/colmap_write.h"
 
 namespace sketchsplat {
 namespace {
@@ -13,13 +14,6 @@ using Terms = Lens::Terms;
 
 double Terms::*const kTerms[] = {&Terms::k1, &Terms::k2, &Terms::p1, &Terms::p2,
                                  &Terms::k3, &Terms::k4, &Terms::k5, &Terms::k6};
-
-auto key_of(const View& v) {
-  const Camera& c = v.camera;
-  const Terms& k = v.lens.terms();
-  return std::make_tuple(c.width, c.height, c.fx, c.fy, c.cx, c.cy, int(v.lens.model()), k.k1, k.k2,
-                         k.p1, k.p2, k.k3, k.k4, k.k5, k.k6);
-}
 
 /// Terms that a model has: the first so many of COLMAP's order.
 std::vector<int> terms_of(LensModel model) {
@@ -53,17 +47,6 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 }
 
 }  // namespace
-
-std::vector<int> shared_cameras(const std::vector<View>& views) {
-  std::vector<int> camera, first;  // the view that a camera was met in
-  for (size_t v = 0; v < views.size(); ++v) {
-    const auto same = [&](int other) { return key_of(views[other]) == key_of(views[v]); };
-    const auto at = std::find_if(first.begin(), first.end(), same);
-    camera.push_back(int(at - first.begin()));
-    if (at == first.end()) first.push_back(int(v));
-  }
-  return camera;
-}
 
 CameraUnknowns::CameraUnknowns(const std::vector<View>& stated, const Eigen::Vector3d& middle,
                                const std::vector<double>& radius_px, const CameraPrior& prior)

@@ -8,9 +8,6 @@
 
 namespace sketchsplat {
 
-/// Of each view, which camera took it: views with the same size, intrinsics and lens share one.
-std::vector<int> shared_cameras(const std::vector<View>& views);
-
 /// How far off stated cameras may be: standard deviations.
 struct CameraPrior {
   double pose_px = 1;       ///< by which each of six ways to move a view shifts the object's image

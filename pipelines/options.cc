@@ -212,6 +212,9 @@ void list_fields(ReconstructOptions* o, Fields* f) {
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
   list_fields(static_cast<DetectionOptions*>(o), f);
+  f->group("Cameras");
+  f->choose("refine-poses", &o->refine_poses, {"auto", "off", "on"},
+            "Move cameras together with the strokes: if they seem to err, never, always");
   list_lift(&o->lift, f);
   list_link(&o->link, f);
   list_segment(&o->segment, f);

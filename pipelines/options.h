@@ -39,6 +39,7 @@ struct CommonOptions {
 struct ReconstructOptions : DetectionOptions {
   std::string preset = "balanced";
   int seed = 0;  ///< copied from CommonOptions
+  std::string refine_poses = "auto";  ///< see refine_poses.h
   LiftOptions lift;
   LinkOptions link;
   SegmentOptions segment;

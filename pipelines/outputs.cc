@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "datasets/colmap_write.h"
 #include "datasets/errors.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/overlay.h"
@@ -58,6 +59,34 @@ void remove_old_overlays(const std::string& folder) {
     if (name.rfind("overlay_", 0) == 0 && entry.path().extension() == ".png")
       fs::remove(entry.path(), ignored);
   }
+}
+
+// Views that are called as COLMAP does: by the path below the folder that holds all images.
+std::vector<View> named_by_path(std::vector<View> views) {
+  fs::path common = fs::path(views.at(0).image_path).parent_path();
+  for (const View& view : views)
+    while (!common.empty() && view.image_path.rfind(common.string() + "/", 0) != 0)
+      common = common.parent_path() == common ? fs::path() : common.parent_path();
+  for (View& view : views)
+    if (!common.empty())
+      view.name = fs::path(view.image_path).lexically_relative(common).generic_string();
+  return views;
+}
+
+// The refined cameras as a model of COLMAP, without its points; nothing of an earlier run.
+void write_cameras(const std::string& folder, const std::vector<View>& views) {
+  const char* const names[] = {"/cameras.txt", "/images.txt", "/points3D.txt"};
+  if (views.empty()) {
+    std::error_code ignored;
+    for (const char* name : names) fs::remove(folder + name, ignored);
+    if (fs::is_empty(folder, ignored)) fs::remove(folder, ignored);
+    return;
+  }
+  prepare_output_folder(folder);
+  const ColmapText text = colmap_text(named_by_path(views));
+  const std::string* const texts[] = {&text.cameras, &text.images, &text.points};
+  for (int k = 0; k < 3; ++k)
+    write_atomically(folder + names[k], [&](std::ostream& out) { out << *texts[k]; });
 }
 
 Json json_of(const std::vector<Regularity>& regularities) {
@@ -126,8 +155,11 @@ void write_outputs(const std::string& folder, Reconstruction reconstruction, con
   {
     Stage stage("write", 0, &reconstruction.report, progress);
     write_sketch(folder, reconstruction, scene, fields_json(method.list), output_options);
+    write_cameras(folder + "/cameras", reconstruction.refined);
     remove_old_overlays(folder);
-    overlays = write_overlays(folder, sketch, scene, output_options.overlays,
+    Scene seen = scene;
+    if (!reconstruction.refined.empty()) seen.views = reconstruction.refined;
+    overlays = write_overlays(folder, sketch, seen, output_options.overlays,
                               &reconstruction.report, progress);
     stage.result(std::to_string(overlays.size()) + " overlays");
   }

@@ -10,7 +10,7 @@
 namespace sketchsplat {
 
 /// Writes everything that `reconstruct` promises into the folder: sketch.json,
-/// parametric_edges.json, sketch.obj, sketch.step, edge_points.ply, overlay_<view>.png, report.json
+/// parametric_edges.json, sketch.obj, cameras/ (if they were refined), sketch.step, edge_points.ply, overlay_<view>.png, report.json
 /// and report.html. The time that this takes becomes a stage of the report. Throws OutputError.
 void write_outputs(const std::string& folder, Reconstruction reconstruction, const Scene& scene,
                    ReconstructOptions reconstruct_options, OutputOptions output_options,

@@ -10,7 +10,8 @@
 
 namespace sketchsplat {
 
-// The method. Images become edgels, edgels points in space, points strokes; then rounds of drawing
+// The method. Images become edgels, edgels points in space, points strokes, and these
+// tell whether the cameras err; then rounds of drawing
 // the strokes into the views, moving them and simplifying the graph, until nothing changes; and the
 // same once more with what is found in the edgels that are left.
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
@@ -20,11 +21,10 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
 
   const std::unique_ptr<Detector> detector = make_detector(options);
   const EdgeWorld all = detect_scene(scene, detector.get(), options, &report, progress);
-  const EdgeWorld world = focus_on_object(all, options, &report, progress);
-  const std::vector<EdgePoint> points = lift_scene(world, options, &report, progress);
-  Sketch sketch = fit_strokes(points, world, options, &report, progress);
-  probe_poses(sketch, world, options, progress); return {};
-  sketch = drop_print(sketch, world, *detector, &report, progress);
+  const PosedStrokes posed = pose_and_fit(focus_on_object(all, options, &report, progress), options,
+                                          &report, progress);
+  const EdgeWorld& world = posed.world;
+  Sketch sketch = drop_print(posed.sketch, world, *detector, &report, progress);
 
   const std::vector<EdgeTarget> targets = make_targets(world, options.optimize);
   for (int k = 0; k < options.rounds; ++k) {
@@ -38,7 +38,8 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
   if (sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   const Sketch proposed = propose_hidden(sketch, world, &report);
-  return {sketch, report, proposed, view_names(world)};
+  return {sketch, report, proposed, view_names(world),
+          posed.refined ? world.views : std::vector<View>()};
 }
 
 }  // namespace sketchsplat

@@ -14,6 +14,7 @@ struct Reconstruction {
   /// Edges that the sketch implies and no view shows, see propose.h; no part of it.
   Sketch proposed;
   std::vector<std::string> views;  ///< names of those that Evidence::views counts
+  std::vector<View> refined;  ///< the cameras, if they are not those of the scene; else empty
 };
 
 /// The edges of the object in the scene, at least one. Throws TooLittleError if there is none,

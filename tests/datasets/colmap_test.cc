@@ -4,7 +4,9 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <fstream>
 
+#include "datasets/colmap_write.h"
 #include "datasets/errors.h"
 #include "datasets/scene.h"
 #include "tests/datasets/temp_folder.h"
@@ -106,6 +108,34 @@ TEST(Colmap, RigsAndFramesOfNewerVersionsChangeNothing) {
   folder.write("sparse/0/rigs.bin", "whatever");
   folder.write("sparse/0/frames.bin", "whatever");
   expect_small_model(open_scene(folder.path()));
+}
+
+TEST(Colmap, WhatIsWrittenIsReadAgain) {
+  const TempFolder folder;
+  write_colmap_text(small_model(), folder.path() + "/sparse");
+  write_images(folder);
+  const Scene scene = open_scene(folder.path());
+  std::vector<View> views = scene.views;
+  views[2].name = "sub/" + views[2].name;
+  const ColmapText text = colmap_text(views);
+  std::ofstream(folder.file("sparse/cameras.txt")) << text.cameras;
+  std::ofstream(folder.file("sparse/images.txt")) << text.images;
+  std::ofstream(folder.file("sparse/points3D.txt")) << text.points;
+  const Scene again = open_scene(folder.path());
+  ASSERT_EQ(again.views.size(), 3u);
+  EXPECT_THAT(shared_cameras(again.views), ElementsAre(0, 0, 1));
+  for (int v = 0; v < 3; ++v) {
+    const View &a = scene.views[v], &b = again.views[v];
+    EXPECT_EQ(b.name, a.name);
+    EXPECT_EQ(b.camera.fx, a.camera.fx);
+    EXPECT_EQ(b.camera.fy, a.camera.fy);
+    EXPECT_EQ(b.camera.cx, a.camera.cx);
+    EXPECT_EQ(b.camera.cy, a.camera.cy);
+    EXPECT_EQ(b.lens.model(), a.lens.model());
+    EXPECT_EQ(b.lens.terms().p2, a.lens.terms().p2);
+    EXPECT_LT((b.cam_from_world.rotation - a.cam_from_world.rotation).norm(), 1e-14);
+    EXPECT_LT((b.cam_from_world.translation - a.cam_from_world.translation).norm(), 1e-14);
+  }
 }
 
 TEST(Colmap, WindowsLineEndsAreRead) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/view.h"
+
+namespace sketchsplat {
+
+/// What stands in cameras.txt, images.txt and points3D.txt of COLMAP.
+struct ColmapText {
+  std::string cameras, images, points;
+};
+
+/// A model of these cameras without points. Views with the same size, intrinsics and lens share a
+/// camera; images and cameras count from 1 in the order of the views.
+ColmapText colmap_text(const std::vector<View>& views);
+
+/// Of each view, which camera took it: views with the same size, intrinsics and lens share one.
+std::vector<int> shared_cameras(const std::vector<View>& views);
+
+}  // namespace sketchsplat

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/refine_poses.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "datasets/errors.h"
+#include "datasets/scene.h"
+#include "pipelines/camera_unknowns.h"
+#include "tests/pipelines/rendered_part.h"
+#include "tests/support/strokes.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+const Vector3d kMiddle(0.5, 0.5, 0.5);
+
+// A block and a bar on it: what it shows fixes a camera.
+std::vector<Polyline> house() {
+  std::vector<Polyline> out = cube_edges({0.2, 0.2, 0.2}, 0.6);
+  for (const Polyline& p : cube_edges({0.35, 0.42, 0.3}, 0.25)) out.push_back(p);
+  return out;
+}
+
+std::vector<EdgelMap> pictures(const std::vector<View>& views) {
+  std::vector<EdgelMap> maps;
+  for (const View& v : views) maps.push_back(ideal_edgels(v, house()));
+  return maps;
+}
+
+// Turned and shifted so that the object moves by some pixels, another way in each view.
+View jogged(View v, int k, double px) {
+  const double angle = px / v.camera.fx;
+  const Vector3d axis(std::cos(2.4 * k), std::sin(2.4 * k), 3 * std::sin(1.7 * k));
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+  v.cam_from_world.rotation = turn * v.cam_from_world.rotation;
+  v.cam_from_world.translation = turn * v.cam_from_world.translation;
+  return v;
+}
+
+std::vector<View> jogged(std::vector<View> views, double px) {
+  for (size_t k = 0; k < views.size(); ++k) views[k] = jogged(views[k], int(k), px);
+  return views;
+}
+
+PosedStrokes posed(const std::vector<View>& stated, const std::vector<View>& truth,
+                   RunReport* report, const std::string& how = "auto") {
+  ReconstructOptions options;
+  options.refine_poses = how;
+  return pose_and_fit(make_edge_world(stated, pictures(truth)), options, report, nullptr);
+}
+
+// Of sides and diagonals of what was found to what is true: largest distance after a shift, turn and
+// scale.
+double shape_error(const Sketch& found) {
+  const std::vector<Polyline> truth = house();
+  Eigen::Matrix3Xd from(3, 0), to(3, 0);
+  for (int s = 0; s < found.size(); ++s)
+    for (int i = 0; i <= 10; ++i) {
+      const Vector3d p = point_at(found, s, 0.1 + 0.08 * i);
+      Vector3d best;
+      double least = 1e300;
+      for (const Polyline& c : truth) {
+        const Vector3d d = c[1] - c[0];
+        const Vector3d q = c[0] + std::clamp(d.dot(p - c[0]) / d.squaredNorm(), 0.0, 1.0) * d;
+        if ((q - p).norm() < least) least = (q - p).norm(), best = q;
+      }
+      from.conservativeResize(3, from.cols() + 1), to.conservativeResize(3, to.cols() + 1);
+      from.col(from.cols() - 1) = p, to.col(to.cols() - 1) = best;
+    }
+  const Eigen::Matrix4d T = Eigen::umeyama(from, to, true);
+  double worst = 0;
+  for (int i = 0; i < from.cols(); ++i)
+    worst = std::max(
+        worst, distance_to(truth, (T * from.col(i).homogeneous()).hnormalized()));
+  return worst;
+}
+
+TEST(CameraUnknowns, DerivativesAreThoseOfDifferences) {
+  std::vector<View> views = ring_of_views(4, kMiddle, 3);
+  for (View& v : views) {
+    v.camera.fy = 510;
+    v.lens = Lens(LensModel::kOpencv, {-0.1, 0.02, 0.003, -0.002});
+  }
+  CameraUnknowns cameras(views, kMiddle, {60, 60, 60, 60}, {});
+  ASSERT_EQ(cameras.cameras(), 1);
+  EXPECT_EQ(cameras.size(), 4 * 6 + 8) << "focal length, aspect, centre and four terms";
+  const Vector3d point(0.7, 0.3, 0.6);
+  CameraUnknowns::Derivatives by;
+  Vector2d at;
+  ASSERT_TRUE(cameras.image(2, point, &at, &by));
+  constexpr double kStep = 1e-4;
+  const auto difference = [&](int unknown) {
+    Vector2d q[2];
+    for (const int sign : {-1, 1}) {
+      VectorXd value = VectorXd::Zero(cameras.size());
+      value[unknown] = sign * kStep;
+      cameras.set(value);
+      cameras.image(2, point, &q[sign > 0]);
+    }
+    return Vector2d((q[1] - q[0]) / (2 * kStep));
+  };
+  for (int k = 0; k < 6; ++k)
+    EXPECT_LT((difference(cameras.pose_column(2) + k) - by.pose.col(k)).norm(), 1e-6) << k;
+  for (int k = 0; k < cameras.num_shared(0); ++k)
+    EXPECT_LT((difference(cameras.shared_column(0) + k) - by.shared.col(k)).norm(), 1e-6) << k;
+  cameras.set(VectorXd::Zero(cameras.size()));
+  for (int k = 0; k < 3; ++k) {
+    Vector2d a, b;
+    cameras.image(2, point + 1e-6 * Vector3d::Unit(k), &a);
+    cameras.image(2, point - 1e-6 * Vector3d::Unit(k), &b);
+    EXPECT_LT(((a - b) / 2e-6 - by.point.col(k)).norm(), 1e-3) << k;
+  }
+}
+
+TEST(CameraUnknowns, ValuesMakeTheCamerasThatTheyAreMadeOf) {
+  const std::vector<View> views = ring_of_views(3, kMiddle, 3);
+  CameraUnknowns cameras(views, kMiddle, {60, 60, 60}, {});
+  VectorXd value(cameras.size());
+  for (int k = 0; k < value.size(); ++k) value[k] = std::sin(k + 1.0);
+  cameras.set(value);
+  EXPECT_LT((cameras.values_of(cameras.current()) - value).norm(), 1e-8);
+}
+
+TEST(RefinePoses, ExactCamerasAreLeftAlone) {
+  const std::vector<View> views = ring_of_views(20, kMiddle, 3);
+  RunReport a, b;
+  const PosedStrokes untouched = posed(views, views, &a);
+  EXPECT_FALSE(untouched.refined);
+  EXPECT_EQ(json_of(untouched.sketch), json_of(posed(views, views, &b, "off").sketch));
+  EXPECT_THAT(a.warnings, testing::IsEmpty());
+}
+
+TEST(RefinePoses, CamerasThatErrComeBack) {
+  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  for (const double px : {0.7, 2.0}) {
+    RunReport report, other;
+    const std::vector<View> stated = jogged(truth, px);
+    const PosedStrokes out = posed(stated, truth, &report);
+    ASSERT_TRUE(out.refined) << px;
+    EXPECT_EQ(out.world.views.size(), truth.size()) << px;
+    EXPECT_GE(out.sketch.size(), 20) << px;
+    EXPECT_LT(shape_error(out.sketch), 0.003) << px;  // half a pixel
+  }
+}
+
+TEST(RefinePoses, AWrongFocalLengthIsFound) {
+  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  std::vector<View> stated = truth;
+  for (View& v : stated) v.camera.fx *= 1.02, v.camera.fy *= 1.02;
+  RunReport report;
+  const PosedStrokes out = posed(stated, truth, &report);
+  ASSERT_TRUE(out.refined);
+  EXPECT_NEAR(out.world.views[0].camera.fx, truth[0].camera.fx, 0.003 * truth[0].camera.fx);
+}
+
+TEST(RefinePoses, AViewThatContradictsTheOthersIsNamedAndLeftOut) {
+  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  std::vector<View> stated = truth;
+  stated[7] = jogged(truth[7], 7, 40);
+  RunReport report;
+  const PosedStrokes out = posed(stated, truth, &report);
+  EXPECT_EQ(out.world.views.size(), 19u);
+  ASSERT_THAT(report.warnings, testing::SizeIs(1));
+  EXPECT_THAT(report.warnings[0], testing::EndsWith(": 7"));
+}
+
+TEST(RefinePoses, CamerasInTheWrongOrderAreRefused) {
+  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  std::vector<View> stated = truth;
+  for (size_t k = 0; k < stated.size(); ++k) {
+    stated[k].cam_from_world = truth[(7 * k + 3) % 20].cam_from_world;
+    stated[k] = jogged(stated[k], int(k), 20);
+  }
+  RunReport report;
+  EXPECT_THROW(posed(stated, truth, &report), TooLittleError);
+}
+
+TEST(RefinePoses, ARenderedPartWithPoseNoiseLosesLittle) {
+  const TempFolder folder;
+  SynthesizeOptions part;
+  part.part = "l-bracket";
+  part.rig.views = 24, part.rig.resolution = 400;
+  part.render.noise = 2;
+  part.outputs = "none";
+  part.degrade.pose_noise_px = 1;
+  write_scene(synthesize(part), folder.path());
+  ReconstructOptions off;
+  off.refine_poses = "off";
+  const Scene scene = open_scene(folder.path());
+  const Reconstruction refined = reconstruct(scene, {}, nullptr);
+  ASSERT_EQ(refined.refined.size(), 24u);
+  const double better = f_at(score(refined.sketch, folder.path()).fine, 0.005);
+  EXPECT_GT(better, f_at(score(reconstruct(scene, off, nullptr).sketch, folder.path()).fine, 0.005));
+}
+
+}  // namespace
+}  // namespace sketchsplat
