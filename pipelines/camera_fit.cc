@@ -113,7 +113,7 @@ class System {
   std::vector<int> of_stroke_;  // rows of stroke s: of_stroke_[s] .. of_stroke_[s + 1] - 1
   std::vector<std::vector<int>> of_view_;
   int offsets_ = 0;
-  double scatter_ = 0, shared_ = 0, before_ = 0;
+  double scatter_ = 0, before_ = 0;
   std::vector<Normal> normals_;
   MatrixXd hessian_;  // of the cameras alone, strokes eliminated
   VectorXd gradient_;
@@ -175,7 +175,6 @@ void System::weigh() {
   scatter_ = std::max(kLeastSigma, 1.4826 * median_of(within));
   for (int k = 0; k < offsets_; ++k) common.push_back(std::abs(sum[k] / weight[k]));
   const double shared = std::max(kLeastSigma, 1.4826 * median_of(common));
-  shared_ = shared;
   for (Row& row : rows_) {
     const double r = sum[row.offset] / weight[row.offset] / (kBiweight * shared);
     row.weight *= r * r < 1 ? std::pow(1 - r * r, 2) : 0;
