@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # rules_test.sh SOURCE BUILD [RULE]: what holds of every file of the repository. Rules: licences,
-# packages, cgal, style_sheet.
+# packages, cgal, style_sheet, words.
 set -uo pipefail
 build=$(readlink -f "$2")
 cd "$1"
@@ -45,6 +45,18 @@ style_sheet() {  # a formatter of C++ makes of color-scheme: what no browser kno
   ! grep -nE '[a-z] - [a-z]| : |[0-9] %' pipelines/page.css || fail "pipelines/page.css is no CSS"
 }
 
-for rule in ${3:-licences packages cgal style_sheet}; do $rule; done
+words() {  # README.md is short, and what it and docs/ link to exists
+  [ "$(wc -l <README.md)" -le 100 ] || fail "README.md has more than 100 lines"
+  [ "$(tr -d '|' <README.md | wc -w)" -le 1000 ] || fail "README.md has more than 1000 words"
+  local page link
+  for page in README.md docs/*.md; do
+    while read -r link; do
+      case $link in http* | *capture.md) continue ;; esac
+      [ -e "$(dirname "$page")/${link%%#*}" ] || fail "$page links to $link, which is not there"
+    done < <(grep -o '](\([^)]*\))' "$page" | sed 's/](\(.*\))/\1/')
+  done
+}
+
+for rule in ${3:-licences packages cgal style_sheet words}; do $rule; done
 [ $failed = 0 ] && echo passed
 exit $failed
