@@ -75,7 +75,7 @@ double light_at(const View& view, const TagSquare& tag, const TagBitmap& bitmap,
 Picture draw(const View& view, const TagSquare& tag, const Shot& shot, std::mt19937* rng) {
   const TagBitmap bitmap = tag36h11(tag.id);
   std::normal_distribution<double> gauss;
-  constexpr int kRays = 5;
+  constexpr int kRays = 4;
   // One pattern for all pixels: noise of the drawing itself would be that of the edges.
   std::vector<Vector2d> ways;
   for (int j = 0; j < kRays; ++j)
