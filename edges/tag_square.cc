@@ -20,6 +20,7 @@ using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 constexpr int kFewestViews = 3;
+constexpr int kManyViews = 10;        // that tell how much views scatter
 constexpr int kFewestEdges = 24;      // of a view
 constexpr int kRounds = 12;           // of measuring and solving
 constexpr double kSmallestCell = 3;   // [px] smaller cells blur into one another
@@ -231,9 +232,10 @@ void drop_strays(std::vector<const TagPatch*>* patches, std::vector<Measured>* a
 double log_sigma(const Equations& e, const std::vector<const TagPatch*>& patches) {
   const Matrix7d inverse = e.A.ldlt().solve(Matrix7d::Identity());
   const double n = double(patches.size());
-  // Places on one side of a cell err together.
-  const double edges = 3 * e.squares / e.weight * inverse(6, 6);
-  const double between = n / (n - 1) * (inverse * e.between * inverse)(6, 6);
+  // Views were fitted, by some three numbers more than the number of interest is worth.
+  const double between = n / std::max(1.0, n - 3) * (inverse * e.between * inverse)(6, 6);
+  // Few views do not tell how they scatter; places on one side of a cell err together.
+  const double edges = n < kManyViews ? 3 * e.squares / e.weight * inverse(6, 6) : 0;
   std::vector<double> sides;
   for (const TagPatch* p : patches) sides.push_back(sighted_side_px(*p));
   return std::sqrt(std::max(edges, between) + std::pow(kPixelFloor / median(sides), 2));
