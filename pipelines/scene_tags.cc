@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/scene_tags.h"
 
+#include <algorithm>
+
 #include "datasets/errors.h"
 #include "datasets/image_io.h"
 
@@ -37,9 +39,12 @@ std::vector<TagSquare> measure_tags(const Scene& scene, RunReport* report, Progr
                                          : "tags in " + std::to_string(with_tags) +
                                                " that do not make one square"));
   std::string result;
-  for (const TagSquare& t : tags)
-    result += (result.empty() ? "tag " : ", tag ") + std::to_string(t.id) + " in " +
-              std::to_string(t.views) + " views";
+  for (const TagSquare& t : tags) {
+    const auto seen = std::count_if(patches.begin(), patches.end(),
+                                    [&](const TagPatch& p) { return p.tag.id == t.id; });
+    result += (result.empty() ? "tag " : ", tag ") + std::to_string(t.id) + " measured in " +
+              std::to_string(t.views) + " of " + std::to_string(seen) + " views";
+  }
   stage.result(result);
   return tags;
 }

@@ -145,6 +145,7 @@ PolishOptions early(const ReconstructOptions& options) {
 
 ExtentOptions extent_options(const ReconstructOptions& options) {
   ExtentOptions extent = options.extent;
+  extent.box = options.box;
   if (options.detector == "2dgs-sn")
     extent.gap_price = std::max(extent.gap_price, options.surfel_gap_price);
   return extent;

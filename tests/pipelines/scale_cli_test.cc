@@ -121,7 +121,7 @@ TEST_F(Scale, ATagInPhotographsTellsIt) {
   EXPECT_NEAR(scale["units_per_world"].get<double>() * side / 10, 1, 1e-3);
   EXPECT_LT(scale["sigma_relative"], 1e-3);
   EXPECT_EQ(scale["tags"][0]["id"], 5);
-  EXPECT_GE(scale["tags"][0]["views"], 8);
+  EXPECT_GE(scale["tags"][0]["views"], 6);
 
   const Outcome o = run("reconstruct " + photos_ + " --preset fast --overlays 0 -o " +
                         in_folder("tag") + " --scale-by tag:5=10 --budget 20");
