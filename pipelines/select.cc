@@ -82,6 +82,15 @@ std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& worl
   return round;
 }
 
+// [px] A pixel, or more where cameras err: three standard deviations of what strokes stand off.
+double reach_of_edgels(const Sketch& sketch, const EdgeWorld& world, MatchOptions match) {
+  constexpr double kLeast = 1, kMost = 3;
+  match.min_run = 0;
+  match.reach_px = kMost;
+  const Observation wide = observe(sketch, world, match, 4.0);
+  return std::clamp(3 * scatter_px(world, wide), kLeast, kMost);
+}
+
 }  // namespace
 
 const char* verdict_name(Verdict verdict) {
@@ -92,9 +101,9 @@ const char* verdict_name(Verdict verdict) {
 Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
                          const SelectOptions& options) {
   MatchOptions match;
-  match.reach_px = 1.0;
   match.exclusive = false;
   match.quadratics = false;
+  match.reach_px = reach_of_edgels(sketch, world, match);
   const StrokeObservation o =
       with_strokes(observe(sketch, world, match, 2.0), world, options.min_views);
   MatchOptions lone = match;
