@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/errors.h"
+#include "edges/find_object.h"
 #include "edges/focus.h"
 #include "edges/link.h"
 #include "edges/unexplained.h"

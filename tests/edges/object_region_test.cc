@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/object_region.h"
+#include "edges/find_object.h"
 
 #include <gtest/gtest.h>
 
