@@ -246,6 +246,10 @@ void list_fields(ReconstructOptions* o, Fields* f) {
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
   list_fields(static_cast<DetectionOptions*>(o), f);
+  Field& like = f->add("like", &o->like, "SKETCH",
+                       "Results of siblings, parts of the same family: a start from what they have "
+                       "in common");
+  like.several = like.takes_more = true;
   list_lift(&o->lift, f);
   list_link(&o->link, f);
   list_segment(&o->segment, f);

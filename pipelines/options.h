@@ -62,6 +62,7 @@ struct ReconstructOptions : DetectionOptions {
   double surfel_sigma_px = 0.25;
   /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
   double surfel_gap_price = 2;
+  std::string like;  ///< sketches of siblings, one a line; empty: none
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
   std::string box_text = "auto";  ///< as the user gives it
   Eigen::AlignedBox3d box;    ///< world units: only what is in it is the object; empty: found out
