@@ -86,7 +86,7 @@ Sketch with_proposed(Sketch sketch, const std::string& given) {
 // From the options, or else from the file.
 KnownScale scale_of(const Sketch& sketch, const ExportArguments& arguments) {
   const CadOptions& cad = arguments.cad;
-  if (!cad.scale_given && cad.scale_by.empty())
+  if (!cad.scale_given && !has_reference(cad))
     return stated_scale(cad, sketch_file(arguments.sketch));
   return known_scale(cad, sketch, sketch_origin(arguments.sketch).footprint, {});
 }
@@ -120,7 +120,7 @@ void check(const ExportArguments& arguments, const std::string& format) {
   check_scale(arguments.cad);
   if (wants_tags(arguments.cad))
     throw UsageError("--scale-by tag is for reconstruct: a sketch holds no tags");
-  if (!cad && format != "sketch" && !arguments.cad.scale_by.empty())
+  if (!cad && format != "sketch" && has_reference(arguments.cad))
     throw UsageError("--scale-by is for step, dxf, svg, obj and sketch: " + format +
                      " is in the scene's own units");
   if (!cad && arguments.cad.scale != 1)

@@ -192,12 +192,14 @@ Length length_of(const ScaleReference& r, const Sketch& sketch, double footprint
 
 }  // namespace
 
+bool has_reference(const CadOptions& options) { return options.scale_by != "none"; }
+
 bool wants_tags(const CadOptions& options) {
-  return !options.scale_by.empty() && parse_scale_reference(options.scale_by).kind == Kind::kTag;
+  return has_reference(options) && parse_scale_reference(options.scale_by).kind == Kind::kTag;
 }
 
 void check_scale(const CadOptions& options) {
-  if (options.scale_given && !options.scale_by.empty())
+  if (options.scale_given && has_reference(options))
     throw UsageError("--scale and --scale-by state the same thing: one of them, please");
 }
 
@@ -205,7 +207,7 @@ KnownScale known_scale(const CadOptions& options, const Sketch& sketch, double f
                        const std::vector<TagSquare>& tags) {
   KnownScale out;
   out.unit = options.unit;
-  if (options.scale_by.empty()) {
+  if (!has_reference(options)) {
     out.units_per_world = options.scale;
     if (options.scale_given) out.source = "--scale";
     return out;

@@ -12,7 +12,10 @@
 
 namespace sketchsplat {
 
-/// Does the option ask for tags in the pictures?
+/// Does the option say anything?
+bool has_reference(const CadOptions& options);
+
+/// Does it ask for tags in the pictures?
 bool wants_tags(const CadOptions& options);
 
 /// Throws UsageError if two options state the scale.

@@ -184,8 +184,9 @@ void list_surfels(DetectionOptions* all, Fields* f) {
          "Edges of the image so near say where an edge is; 0 leaves it to the surfels");
 }
 
-// Six numbers with commas between.
+// "auto", or six numbers with commas between.
 Eigen::AlignedBox3d parse_box(const std::string& text) {
+  if (text == "auto") return {};
   double x[6];
   char comma[6] = {};
   std::istringstream in(text);
@@ -200,15 +201,15 @@ Eigen::AlignedBox3d parse_box(const std::string& text) {
     box.extend(Eigen::Vector3d(x[3], x[4], x[5]));
   }
   if (!good || !(in >> std::ws).eof() || !(box.sizes().minCoeff() > 0))
-    throw UsageError("--box: expected two opposite corners as x0,y0,z0,x1,y1,z1, got '" + text +
+    throw UsageError("--box: expected auto or two opposite corners as x0,y0,z0,x1,y1,z1, got '" + text +
                      "'");
   return box;
 }
 
 void list_region(ReconstructOptions* o, Fields* f) {
   f->group("The object, and the time");
-  f->add("box", &o->box_text, "x0,y0,z0,x1,y1,z1",
-         "Only what lies in this box, in world units, is the object")
+  f->add("box", &o->box_text, "x0,y0,z0,x1,y1,z1|auto",
+         "Only what lies in this box, in world units, is the object; auto: masks say, or the table")
       .applied = [o] { o->box = parse_box(o->box_text); };
   f->add("budget", &o->budget, "s", 0, 1e9,
          "Stop refining after this time, and report; 0: never. Results depend on the machine then");
@@ -287,10 +288,10 @@ void list_fields(CadOptions* o, Fields* f) {
       .applied = [o] { o->unit_given = true; };
   f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit")
       .applied = [o] { o->scale_given = true; };
-  f->add("scale-by", &o->scale_by, "WHAT=LENGTH",
+  f->add("scale-by", &o->scale_by, "WHAT=LENGTH|none",
          "The same from what is known: tag (edge of an AprilTag's black square), size, diameter (of "
          "the largest circle), circle:N, line:N or nodes:N-M")
-      .applied = [o] { parse_scale_reference(o->scale_by); };
+      .applied = [o] { if (o->scale_by != "none") parse_scale_reference(o->scale_by); };
   f->add("faces", &o->faces, "Write closed planar loops as faces in STEP");
   f->add("face-tolerance", &o->face.tolerance, "of the extent", 1e-9, 0.1,
          "Distance of a face's edges from its plane");

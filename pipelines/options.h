@@ -64,7 +64,7 @@ struct ReconstructOptions : DetectionOptions {
   double surfel_gap_price = 2;
   std::string like;  ///< sketches of siblings, one a line; empty: none
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
-  std::string box_text;       ///< as the user gives it
+  std::string box_text = "auto";  ///< as the user gives it
   Eigen::AlignedBox3d box;    ///< world units: only what is in it is the object; empty: found out
   bool tags = false;          ///< measure AprilTags; what is on them is not the object
   double budget = 0;          ///< [s] after which nothing is refined any more; 0: none
@@ -75,7 +75,7 @@ struct ReconstructOptions : DetectionOptions {
 struct CadOptions {
   LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
   double scale = 1.0;                         ///< units per world unit
-  std::string scale_by;  ///< what tells the scale instead, see known_scale.h; empty: nothing
+  std::string scale_by = "none";  ///< what tells the scale instead, see known_scale.h
   bool unit_given = false, scale_given = false;  ///< by the user
   bool faces = false;                         ///< closed planar loops as faces, in STEP
   PlanarFaceOptions face;
