@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "edges/rim.h"
 #include "edges/unexplained.h"
@@ -82,6 +83,30 @@ std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& worl
   return round;
 }
 
+// Judges strokes that are known from elsewhere. Where nothing hides them they show, as they did
+// there; where something may, it hides them in every view or, as likely, as in others.
+class KnownJudge {
+ public:
+  KnownJudge(const EdgeWorld& world, const Observation& every, double reach_px, double sigma_px,
+             const SelectOptions& options) {
+    if (options.prior.empty()) return;
+    EvidenceModel model = options.evidence;
+    model.miss = kKnownMiss;
+    open_.emplace(world, every, reach_px, sigma_px, model);
+    model.unsure_rate = kHiddenRate;
+    hidden_.emplace(world, every, reach_px, sigma_px, model);
+  }
+  double nats(int stroke, const EdgelFlags* others) const {
+    const double a = open_->nats(stroke, others), b = hidden_->nats(stroke, others);
+    return std::max(a, b) + std::log(0.5 + 0.5 * std::exp(-std::abs(a - b)));
+  }
+
+ private:
+  static constexpr double kKnownMiss = 0.15;   // likelihood ratio of a place without an edgel
+  static constexpr double kHiddenRate = 0.02;  // of views that show what others may hide
+  std::optional<StrokeJudge> open_, hidden_;
+};
+
 }  // namespace
 
 const char* verdict_name(Verdict verdict) {
@@ -101,6 +126,7 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   lone.min_run = 0;
   const Observation every = observe(sketch, world, lone, 2.0);
   const StrokeJudge judge(world, every, match.reach_px, o.matches.sigma_px, options.evidence);
+  const KnownJudge known_judge(world, every, match.reach_px, o.matches.sigma_px, options);
 
   std::vector<int> order(sketch.size());
   std::iota(order.begin(), order.end(), 0);
@@ -131,7 +157,8 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     Verdict& verdict = result.verdicts[i];
     const auto judge_by = [&](const EdgelFlags& others) {
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
-      result.nats[i] = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
+      result.nats[i] = known(i) ? known_judge.nats(i, &others) + options.prior[i]
+                                : judge.nats(i, &others);
       verdict = result.nats[i] > options.least_nats ? Verdict::kKept : Verdict::kUnlikely;
     };
     if (o.strokes[i].length_px < options.min_length_px) verdict = Verdict::kShort;
@@ -141,7 +168,8 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     const double places = own_cover(o, i, options.min_views, owned) * o.strokes[i].samples;
     if (!known(i) && (claim(o, i, owned, &per_view) < options.min_views ||
                       kOutlierNats * places < price(i)))
-      verdict = Verdict::kRedundant;
+      verdict = judge.nats(i, nullptr) > options.least_nats ? Verdict::kRedundant
+                                                            : Verdict::kUnlikely;
     else
       judge_by(owned);
     if (verdict != Verdict::kKept &&
