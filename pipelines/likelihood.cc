@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kEvery = 3;      // samples: the hull is coarse
 constexpr int kManyViews = 8;  // see most strokes that are edges
+constexpr double kKnownMiss = 0.15;   // of strokes known from elsewhere, see EvidenceModel
+constexpr double kHiddenRate = 0.02;  // of views that show what others may hide, of hidden ones
 
 // Logarithms of the widths of edgels on strokes that many views see.
 std::vector<float> log_widths(const EdgeWorld& world, const Observation& every) {
@@ -79,6 +81,19 @@ double StrokeJudge::sharpness(float width_px) const {
 }
 
 double StrokeJudge::nats(int stroke, const EdgelFlags* others) const {
+  return nats(stroke, others, model_);
+}
+
+double StrokeJudge::nats_of_known(int stroke, const EdgelFlags* others) const {
+  EvidenceModel model = model_;
+  model.miss = kKnownMiss;
+  const double open = nats(stroke, others, model);
+  model.unsure_rate = kHiddenRate;
+  const double hidden = nats(stroke, others, model);
+  return std::max(open, hidden) + std::log(0.5 + 0.5 * std::exp(-std::abs(open - hidden)));
+}
+
+double StrokeJudge::nats(int stroke, const EdgelFlags* others, const EvidenceModel& model) const {
   const int first = every_.layout.first[stroke], end = every_.layout.first[stroke + 1];
   const int views = int(world_.views.size());
   std::vector<double> found(views);  // sum of the ratios of places with an edgel
@@ -89,7 +104,7 @@ double StrokeJudge::nats(int stroke, const EdgelFlags* others) const {
       const double r = match.distance_px / sigma_;
       const bool theirs = others && (*others)[match.view][match.edgel];
       const double near =
-          model_.accident + (1 - model_.accident) * peak_ * std::exp(-0.5 * r * r);
+          model.accident + (1 - model.accident) * peak_ * std::exp(-0.5 * r * r);
       found[match.view] +=
           theirs ? 1 : near * sharpness(world_.maps[match.view].edgels[match.edgel].width);
       ++edgels[match.view];
@@ -100,9 +115,9 @@ double StrokeJudge::nats(int stroke, const EdgelFlags* others) const {
     const InView& in = in_view_[stroke][v];
     if (!(in.inside > 0)) continue;
     const double places = std::max(in.inside * (end - first), double(edgels[v]));
-    const double ratio = (found[v] + (places - edgels[v]) * model_.miss) / places;
-    const double rate = blind ? model_.blind_rate
-                              : in.sure * model_.sure_rate + (1 - in.sure) * model_.unsure_rate;
+    const double ratio = (found[v] + (places - edgels[v]) * model.miss) / places;
+    const double rate = blind ? model.blind_rate
+                              : in.sure * model.sure_rate + (1 - in.sure) * model.unsure_rate;
     sum += in.inside * std::log(1 - rate + rate * ratio);
   }
   return sum;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "edges/rim.h"
 #include "edges/unexplained.h"
@@ -83,30 +82,6 @@ std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& worl
   return round;
 }
 
-// Judges strokes that are known from elsewhere. Where nothing hides them they show, as they did
-// there; where something may, it hides them in every view or, as likely, as in others.
-class KnownJudge {
- public:
-  KnownJudge(const EdgeWorld& world, const Observation& every, double reach_px, double sigma_px,
-             const SelectOptions& options) {
-    if (options.prior.empty()) return;
-    EvidenceModel model = options.evidence;
-    model.miss = kKnownMiss;
-    open_.emplace(world, every, reach_px, sigma_px, model);
-    model.unsure_rate = kHiddenRate;
-    hidden_.emplace(world, every, reach_px, sigma_px, model);
-  }
-  double nats(int stroke, const EdgelFlags* others) const {
-    const double a = open_->nats(stroke, others), b = hidden_->nats(stroke, others);
-    return std::max(a, b) + std::log(0.5 + 0.5 * std::exp(-std::abs(a - b)));
-  }
-
- private:
-  static constexpr double kKnownMiss = 0.15;   // likelihood ratio of a place without an edgel
-  static constexpr double kHiddenRate = 0.02;  // of views that show what others may hide
-  std::optional<StrokeJudge> open_, hidden_;
-};
-
 }  // namespace
 
 const char* verdict_name(Verdict verdict) {
@@ -126,7 +101,6 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   lone.min_run = 0;
   const Observation every = observe(sketch, world, lone, 2.0);
   const StrokeJudge judge(world, every, match.reach_px, o.matches.sigma_px, options.evidence);
-  const KnownJudge known_judge(world, every, match.reach_px, o.matches.sigma_px, options);
 
   std::vector<int> order(sketch.size());
   std::iota(order.begin(), order.end(), 0);
@@ -157,7 +131,7 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     Verdict& verdict = result.verdicts[i];
     const auto judge_by = [&](const EdgelFlags& others) {
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
-      result.nats[i] = known(i) ? known_judge.nats(i, &others) + options.prior[i]
+      result.nats[i] = known(i) ? judge.nats_of_known(i, &others) + options.prior[i]
                                 : judge.nats(i, &others);
       verdict = result.nats[i] > options.least_nats ? Verdict::kKept : Verdict::kUnlikely;
     };
