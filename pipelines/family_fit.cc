@@ -249,7 +249,7 @@ SampleJacobian jacobian_of(const Family& family, const Sketch& placed, int strok
 
 }  // namespace
 
-FamilyFit::System FamilyFit::system(const Sibling& now, double reach_px) const {
+Sibling FamilyFit::step(const Sibling& now, double reach_px) const {
   const Sketch s = sketch(now);
   const bool far = reach_px > kNear;
   const SampleLayout layout = plan_samples(s, std::max(2.0, reach_px / 3) * world_.footprint);
@@ -297,32 +297,6 @@ FamilyFit::System FamilyFit::system(const Sibling& now, double reach_px) const {
     }
   }
   a.diagonal().tail(7).array() += 1e-9 * (1 + a.diagonal().tail(7).maxCoeff());
-  return {a, b, centre};
-}
-
-std::vector<double> FamilyFit::sigmas(const Sibling& sibling) const {
-  const Eigen::Index g = sibling.numbers.size();
-  const Eigen::MatrixXd covariance =
-      system(sibling, kNearest).a.ldlt().solve(Eigen::MatrixXd::Identity(g + 7, g + 7));
-  const auto sigma = [&](int number) {
-    return sibling.pose.scale * std::sqrt(std::max(0.0, covariance(number, number)));
-  };
-  std::vector<double> out(family_.graph.size());
-  for (int s = 0; s < family_.graph.size(); ++s) {
-    const Stroke& stroke = family_.graph.strokes[s];
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int n : {stroke.begin, stroke.end})
-        if (n >= 0) out[s] = std::max(out[s], sigma(family_.nodes[3 * n + axis]));
-      for (int h = 0; h < num_handles(stroke.kind); ++h)
-        out[s] = std::max(out[s], sigma(family_.handles[3 * (stroke.handle + h) + axis]));
-    }
-  }
-  return out;
-}
-
-Sibling FamilyFit::step(const Sibling& now, double reach_px) const {
-  const auto [a, b, centre] = system(now, reach_px);
-  const Eigen::Index g = now.numbers.size();
   const Eigen::VectorXd move = a.ldlt().solve(b);
   if (!move.allFinite()) return now;
   const Eigen::Matrix<double, 7, 1> p = move.tail(7);

@@ -36,21 +36,11 @@ class FamilyFit {
 
   Sketch sketch(const Sibling& sibling) const;
 
-  /// Per stroke: largest standard deviation of a coordinate of its control points, world units, by
-  /// the edgels near the sibling's strokes and the family.
-  std::vector<double> sigmas(const Sibling& sibling) const;
-
   /// Share of the edgels that lie along its strokes.
   double explained(const Sketch& sketch) const;
 
  private:
   class Lookup;
-  struct System {  // information and pull of numbers, shift, turn and growth about the centre
-    Eigen::MatrixXd a;
-    Eigen::VectorXd b;
-    Eigen::Vector3d centre;
-  };
-  System system(const Sibling& now, double reach_px) const;
   Sibling step(const Sibling& now, double reach_px) const;
   std::vector<SampleMatch> far_matches(const CurvePoints& samples, double reach_px) const;
   double misfit(const Sibling& sibling) const;

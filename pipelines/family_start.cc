@@ -18,8 +18,7 @@ constexpr int kFitViews = 16;      // that most steps of the fit look at
 constexpr int kStarts = 3;         // that are followed to the end, at most
 constexpr double kGood = 0.9;      // of the edgels explained: no other start is tried
 constexpr double kExplained = 0.8;  // of the edgels, at least, by a sibling
-constexpr double kSeen = 0.3;       // of its length that the views show, at least
-constexpr double kUnknown = 2;      // [px] standard deviation beyond which the unseen is not told
+constexpr double kSeen = 0.6;       // of its length that the views show, at least
 constexpr double kFreeReach = 3;    // [px] of edgels that pull at strokes that are set free
 constexpr double kFreeCover = 0.5;  // of a stroke that its views show, at least, to set it free
 
@@ -34,7 +33,6 @@ std::vector<Sketch> read_siblings(const std::string& paths) {
 }
 
 struct Best {
-  Sibling sibling;
   Sketch sketch;
   double explained = -1;
 };
@@ -43,10 +41,9 @@ Best best_fit(const FamilyFit& fit) {
   Best best;
   const std::vector<Sibling> starts = fit.starts();
   for (size_t k = 0; k < std::min<size_t>(kStarts, starts.size()); ++k) {
-    const Sibling sibling = fit.fit(starts[k]);
-    const Sketch sketch = fit.sketch(sibling);
+    const Sketch sketch = fit.sketch(fit.fit(starts[k]));
     const double explained = fit.explained(sketch);
-    if (explained > best.explained) best = {sibling, sketch, explained};
+    if (explained > best.explained) best = {sketch, explained};
     if (best.explained > kGood) break;
   }
   return best;
@@ -96,29 +93,22 @@ FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions
   SelectOptions select = select_options(options);
   for (int s = 0; s < sketch.size(); ++s) select.prior.push_back(family.log_odds(s));
   const Selection chosen = select_strokes(sketch, world, select);
-  // Where neither views nor family know a place, there is nothing to write.
-  const std::vector<double> sigma = fit.sigmas(best.sibling);
-  std::vector<bool> keep;
-  for (int s = 0; s < sketch.size(); ++s)
-    keep.push_back(chosen.verdicts[s] == Verdict::kKept &&
-                   (freed.free[s] || sigma[s] <= kUnknown * world.footprint));
   double length = 0, seen = 0;
-  FamilyStart start{keep_strokes(sketch, keep), true};
+  FamilyStart start{chosen.sketch, true};
   for (int s = 0; s < sketch.size(); ++s) {
     const double l = stroke_length(sketch, s);
     length += l;
     if (chosen.nats[s] > select.prior[s]) seen += l;
-    start.all_free = start.all_free && (freed.free[s] || !keep[s]);
+    start.all_free = start.all_free && (freed.free[s] || chosen.verdicts[s] != Verdict::kKept);
     if (!progress) continue;
     char line[200];
-    std::snprintf(line, sizeof line, "%s %d is %s, %s: %.0f px, %d views, sigma %.2f px, %.1f nat",
-                  kind_name(sketch.strokes[s].kind), s, verdict_name(chosen.verdicts[s]),
-                  !keep[s] ? "left out" : freed.free[s] ? "free" : "held",
-                  chosen.stats[s].length_px, chosen.stats[s].views, sigma[s] / world.footprint,
+    std::snprintf(line, sizeof line, "%s %d is %s, %s: %.0f px, %d views, moves %.2f px, %.1f nat",
+                  kind_name(sketch.strokes[s].kind), s, verdict_name(chosen.verdicts[s]), freed.free[s] ? "free" : "held",
+                  chosen.stats[s].length_px, chosen.stats[s].views, chosen.stats[s].bias_px,
                   chosen.nats[s]);
     progress->note(line);
   }
-  const double explained = fit.explained(start.sketch);
+  const double explained = fit.explained(chosen.sketch);
   const bool is_sibling = explained >= kExplained && seen >= kSeen * length;
   report->counts.push_back({"family_siblings", double(family.siblings)});
   report->counts.push_back({"family_numbers", double(family.mean.size())});
@@ -128,7 +118,7 @@ FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions
   report->counts.push_back({"family_followed", double(is_sibling)});
   char said[120];
   std::snprintf(said, sizeof said, "%s: %.0f %% of the edgels, %d of %d strokes",
-                is_sibling ? "a sibling" : "no sibling", 100 * explained, start.sketch.size(),
+                is_sibling ? "a sibling" : "no sibling", 100 * explained, chosen.sketch.size(),
                 sketch.size());
   stage.result(said);
   return is_sibling ? start : FamilyStart{};

@@ -2,15 +2,15 @@
 #include "pipelines/likelihood.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sketchsplat {
 namespace {
 
 constexpr int kEvery = 3;      // samples: the hull is coarse
+constexpr int kRates = 10;     // shares of the views that see an edge, over which is integrated
 constexpr int kManyViews = 8;  // see most strokes that are edges
-constexpr double kKnownMiss = 0.15;   // of strokes known from elsewhere, see EvidenceModel
-constexpr double kHiddenRate = 0.02;  // of views that show what others may hide, of hidden ones
 
 // Logarithms of the widths of edgels on strokes that many views see.
 std::vector<float> log_widths(const EdgeWorld& world, const Observation& every) {
@@ -81,19 +81,6 @@ double StrokeJudge::sharpness(float width_px) const {
 }
 
 double StrokeJudge::nats(int stroke, const EdgelFlags* others) const {
-  return nats(stroke, others, model_);
-}
-
-double StrokeJudge::nats_of_known(int stroke, const EdgelFlags* others) const {
-  EvidenceModel model = model_;
-  model.miss = kKnownMiss;
-  const double open = nats(stroke, others, model);
-  model.unsure_rate = kHiddenRate;
-  const double hidden = nats(stroke, others, model);
-  return std::max(open, hidden) + std::log(0.5 + 0.5 * std::exp(-std::abs(open - hidden)));
-}
-
-double StrokeJudge::nats(int stroke, const EdgelFlags* others, const EvidenceModel& model) const {
   const int first = every_.layout.first[stroke], end = every_.layout.first[stroke + 1];
   const int views = int(world_.views.size());
   std::vector<double> found(views);  // sum of the ratios of places with an edgel
@@ -104,23 +91,32 @@ double StrokeJudge::nats(int stroke, const EdgelFlags* others, const EvidenceMod
       const double r = match.distance_px / sigma_;
       const bool theirs = others && (*others)[match.view][match.edgel];
       const double near =
-          model.accident + (1 - model.accident) * peak_ * std::exp(-0.5 * r * r);
+          model_.accident + (1 - model_.accident) * peak_ * std::exp(-0.5 * r * r);
       found[match.view] +=
           theirs ? 1 : near * sharpness(world_.maps[match.view].edgels[match.edgel].width);
       ++edgels[match.view];
     }
   const bool blind = world_.hull.empty();
   double sum = 0;
+  // Without a hull nobody knows how many views something hides it from: all shares are as likely.
+  std::array<double, kRates> blind_sum = {};
   for (int v = 0; v < views; ++v) {
     const InView& in = in_view_[stroke][v];
     if (!(in.inside > 0)) continue;
     const double places = std::max(in.inside * (end - first), double(edgels[v]));
-    const double ratio = (found[v] + (places - edgels[v]) * model.miss) / places;
-    const double rate = blind ? model.blind_rate
-                              : in.sure * model.sure_rate + (1 - in.sure) * model.unsure_rate;
+    const double ratio = (found[v] + (places - edgels[v]) * model_.miss) / places;
+    const double rate = in.sure * model_.sure_rate + (1 - in.sure) * model_.unsure_rate;
     sum += in.inside * std::log(1 - rate + rate * ratio);
+    for (int k = 0; k < kRates; ++k) {
+      const double share = (k + 0.5) / kRates;
+      blind_sum[k] += in.inside * std::log(1 - share + share * ratio);
+    }
   }
-  return sum;
+  if (!blind) return sum;
+  const double most = *std::max_element(blind_sum.begin(), blind_sum.end());
+  double mean = 0;
+  for (const double s : blind_sum) mean += std::exp(s - most) / kRates;
+  return most + std::log(mean);
 }
 
 }  // namespace sketchsplat

@@ -35,18 +35,11 @@ class StrokeJudge {
   /// be null). Places within a view are no independent witnesses, views are.
   double nats(int stroke, const EdgelFlags* others) const;
 
-  /// The same of a stroke that is known from elsewhere, but not whether this part has it. Where
-  /// nothing hides it it shows, as it did there; where something may, it hides it in all of these
-  /// views or, as likely, in some as ever.
-  double nats_of_known(int stroke, const EdgelFlags* others) const;
-
  private:
   struct InView {
     double inside = 0;  // share of the stroke's places that lie in the image
     double sure = 0;    // share of these that nothing hides
   };
-
-  double nats(int stroke, const EdgelFlags* others, const EvidenceModel& model) const;
 
   const EdgeWorld& world_;
   const Observation& every_;

@@ -82,12 +82,14 @@ Json points_json(const Sketch& sketch, int s, double length, const Extent& exten
 Json curves_json(const Sketch& sketch) {
   const Extent extent = sketch_extent(sketch);
   Json curves = Json::array();
+  const std::vector<int> curve = chain_of_strokes(curve_chains(sketch), sketch.size());
   for (int s = 0; s < sketch.size(); ++s) {
     const double length = stroke_length(sketch, s);
     const Evidence e = s < int(sketch.evidence.size()) ? sketch.evidence[s] : Evidence();
     const bool visible = length > 0 && extent.size > 0;
     curves.push_back(
         {{"kind", kind_name(sketch.strokes[s].kind)},
+         {"curve", curve[s]},
          {"length", length},
          {"opacity", e.opacity},
          {"support_views", e.support_views},
@@ -129,6 +131,8 @@ std::string report_json(const ReportInput& input) {
     json["peak_mb"] = peak_memory_mb();
   }
   json["counts"] = counts_json(input);
+  if (input.scale && !input.scale->source.empty())
+    json["scale"] = Json::parse(scale_json(*input.scale));
   json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;
   json["strokes"] = Json::array();

@@ -131,8 +131,7 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     Verdict& verdict = result.verdicts[i];
     const auto judge_by = [&](const EdgelFlags& others) {
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
-      result.nats[i] = known(i) ? judge.nats_of_known(i, &others) + options.prior[i]
-                                : judge.nats(i, &others);
+      result.nats[i] = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
       verdict = result.nats[i] > options.least_nats ? Verdict::kKept : Verdict::kUnlikely;
     };
     if (o.strokes[i].length_px < options.min_length_px) verdict = Verdict::kShort;
