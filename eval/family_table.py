@@ -5,7 +5,7 @@
 Of each family (a built-in part whose parameters are drawn anew for every seed), the siblings are
 reconstructed from 24 views of 400 x 400 px each. One more, left out, is reconstructed from 50, 10,
 5 and 3 views, cold and like its siblings; and like the siblings of another family, which must not
-change it. Printed: F5 and the F of strokes as in `evaluate`, seconds, and whether the
+change it. Printed: F5 and the F of strokes as in `evaluate`, seconds of CPU, and whether the
 siblings were followed. Scenes and results that are there already are used again.
 
   eval/family_table.py --binary build/pipelines/sketchsplat --work DIR [--siblings 5]
@@ -14,6 +14,7 @@ siblings were followed. Scenes and results that are there already are used again
 import argparse
 import json
 import os
+import resource
 import subprocess
 import sys
 
@@ -28,10 +29,13 @@ PICTURES = "--resolution 400 --object-size 0.7 --noise 3 --outputs none -q".spli
 
 
 def run(arguments, allowed=(0,)):
+    """Seconds of CPU that it took."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if done.returncode not in allowed:
         sys.exit(" ".join(arguments) + "\n" + done.stderr)
-    return done.returncode
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 class Table:
@@ -51,15 +55,22 @@ class Table:
         folder = f"{self.work}/results/{os.path.basename(scene)}.{name}"
         if not os.path.exists(folder + "/done"):
             options = [o for path in like for o in ("--like", path)]
-            run([self.binary, "reconstruct", scene, "--out", folder, "-q", "--overlays", "0"] +
-                options, (0, 4))
-            open(folder + "/done", "w").close()
+            seconds = run([self.binary, "reconstruct", scene, "--out", folder, "-q", "--overlays",
+                           "0"] + options, (0, 4))
+            os.makedirs(folder, exist_ok=True)
+            with open(folder + "/done", "w") as file:
+                file.write(f"{seconds:.2f}\n")
         return folder
+
+    @staticmethod
+    def seconds(folder):
+        with open(folder + "/done") as file:
+            return float(file.read())
 
     def numbers(self, scene, folder):
         """F5, F of strokes, seconds, followed."""
         if not os.path.exists(folder + "/sketch.json"):
-            return {"f5": 0.0, "strokes": 0.0, "seconds": float("nan"), "followed": 0}
+            return {"f5": 0.0, "strokes": 0.0, "seconds": self.seconds(folder), "followed": 0}
         path = folder + "/numbers.json"
         run([self.binary, "evaluate", "--pred", folder, "--gt", scene, "--json", path, "-q"])
         with open(path) as file:
@@ -67,7 +78,7 @@ class Table:
         with open(folder + "/report.json") as file:
             report = json.load(file)
         return {"f5": numbers["F5"], "strokes": numbers["structure"]["f"],
-                "seconds": report["seconds"],
+                "seconds": self.seconds(folder),
                 "followed": report["counts"].get("family_followed", 0)}
 
 
