@@ -185,7 +185,7 @@ TEST(SceneSizes, ASceneThatTakesTooLongCostsItsOwnSizeOnly) {
   folder.write("next/meta_data.json", "{}");
   int steps = 0;
   const std::vector<SceneSize> sizes =
-      scene_sizes({{"slow", folder.path() + "/slow"}, {"next", folder.path() + "/next"}}, "", 0.2,
+      scene_sizes({{"slow", folder.path() + "/slow"}, {"next", folder.path() + "/next"}}, {}, 0.2,
                   [&] { ++steps; });
   EXPECT_EQ(sizes.size(), 2u);
   EXPECT_EQ(steps, 2);
