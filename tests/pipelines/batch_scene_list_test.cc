@@ -167,7 +167,7 @@ TEST(SceneSizes, AreThoseOfTheHeadersAndBrokenScenesHaveNone) {
                                                     {"broken", folder.path() + "/broken"},
                                                     {"gone", folder.path() + "/gone"},
                                                     scene("three", 3)},
-                                                   "", 60, [&] { ++steps; });
+                                                   {}, 60, [&] { ++steps; });
   ASSERT_EQ(sizes.size(), 4u);
   EXPECT_EQ(sizes[0].views, 2);
   EXPECT_EQ(sizes[0].pixels, 2 * 8 * 6);
