@@ -137,7 +137,8 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     // Where two edges run side by side, the better one has explained its edgels already.
     const double places = own_cover(o, i, options.min_views, owned) * o.strokes[i].samples;
     if (claim(o, i, owned, &per_view) < options.min_views || kOutlierNats * places < price(i))
-      verdict = Verdict::kRedundant;
+      verdict = judge.nats(i, nullptr) > options.least_nats ? Verdict::kRedundant
+                                                            : Verdict::kUnlikely;
     else
       judge_by(owned);
     if (verdict != Verdict::kKept && claim(o, i, explained, &per_view) >= options.min_views)

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/errors.h"
+#include "edges/find_object.h"
 #include "edges/focus.h"
 #include "edges/link.h"
 #include "edges/unexplained.h"
@@ -77,12 +78,14 @@ EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& opti
   LiftOptions lift = options.lift;
   lift.stride_px *= kCoarser;
   lift.sweep_views = std::min(lift.sweep_views, kCoarseViews);
-  std::vector<Eigen::Vector3d> points, cameras;
-  for (const EdgePoint& p : lift_edges(coarse, lift)) points.push_back(p.position);
+  const std::vector<EdgePoint> points = lift_edges(coarse, lift);
+  RegionOptions look;
+  look.min_views = lift.min_views;
+  std::vector<Eigen::Vector3d> cameras;
   for (const View& v : world.views) cameras.push_back(v.center_in_world());
   const ObjectRegion object =
       find_object(points, cameras, meeting_point(world.views),
-                  0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, {});
+                  0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, look);
   stage.result(object.table ? "on a table" : "no table");
   return focused(world, object, options.detect.meaning.most_sides);
 }

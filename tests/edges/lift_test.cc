@@ -6,6 +6,7 @@
 
 #include "edges/link.h"
 #include "edges/match.h"
+#include "tests/support/strokes.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {
@@ -15,11 +16,19 @@ using namespace test;  // NOLINT
 const Eigen::Vector3d kMiddle(0.5, 0.5, 0.5);
 
 TEST(EdgeWorld, BoundsHoldTheObjectTightly) {
-  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), cube_edges({0.1, 0.1, 0.1}, 0.8));
-  EXPECT_TRUE((w.bounds.min().array() <= 0.1).all());
-  EXPECT_TRUE((w.bounds.max().array() >= 0.9).all());
-  EXPECT_LT(w.bounds.sizes().maxCoeff(), 1.2);
-  EXPECT_NEAR(w.footprint, 3.0 / 500, 1e-4);
+  const std::vector<View> views = ring_of_views(20, kMiddle, 3);
+  for (const bool masked : {false, true}) {
+    std::vector<EdgelMap> maps;
+    for (const View& v : views) {
+      maps.push_back(ideal_edgels(v, cube_edges({0.1, 0.1, 0.1}, 0.8)));
+      if (masked) maps.back().mask = convex_mask(v, cube_corners({0.1, 0.1, 0.1}, 0.8));
+    }
+    const EdgeWorld w = make_edge_world(views, maps);
+    EXPECT_TRUE((w.bounds.min().array() <= 0.1).all());
+    EXPECT_TRUE((w.bounds.max().array() >= 0.9).all());
+    EXPECT_LT(w.bounds.sizes().maxCoeff(), masked ? 1.2 : 3.2) << "half of the views' field";
+    EXPECT_NEAR(w.footprint, 3.0 / 500, 1e-4);
+  }
 }
 
 TEST(EdgeWorld, ViewsWithoutEdgelsDoNotVote) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "edges/meaningful.h"
 
+#include "edges/focus.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,7 +80,7 @@ TEST(Meaningful, WhatNoiseMakesAtALowThresholdGoes) {
   DetectOptions low = everything();
   low.high_sigma = low.low_sigma = 2;
   ASSERT_GT(detect_edges(p, low).edgels.size(), 1500u);
-  low.meaning.most_false = MeaningOptions().most_false;
+  low.meaning.most_false = 1;
   EXPECT_LE(detect_edges(p, low).num_chains(), 10);
 }
 
@@ -109,9 +111,7 @@ TEST(Meaningful, ABudgetKeepsTheLongSmoothEdgeFirst) {
   Picture p = grey_picture(240, 240, 0.5f);
   add_speckles(&p, 1500, 0.15);
   add_step(&p, 0.15);
-  DetectOptions options = everything();
-  options.meaning.most_sides = 2;
-  const EdgelMap map = detect_edges(p, options);
+  const EdgelMap map = most_meaningful(detect_edges(p, {}), 480);
   EXPECT_LE(map.edgels.size(), 480u);
   EXPECT_GE(on_step(map), 0.8 * 240 * 1.04);
 }

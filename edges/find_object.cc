@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "edges/object_region.h"
+#include "edges/find_object.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -17,6 +18,8 @@ using Plane = Eigen::Hyperplane<double, 3>;
 
 constexpr int kTrials = 3000;       // planes through three points
 constexpr int kMostPoints = 3000;   // that judge them
+constexpr double kSameDirection = 0.96;  // cosine
+constexpr double kNear = 0.25;  // of what the cameras look at: how far from its middle things count
 constexpr double kBelow = 4;        // points that lie on a plane make up for one far below it
 constexpr double kMostBelow = 0.1;  // of the points, far below a table
 
@@ -118,6 +121,29 @@ std::vector<int> group_of(const std::vector<Vector2d>& places, double cell, int*
   return out;
 }
 
+// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a gap.
+std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
+                            int start, double footprint, const RegionOptions& options) {
+  std::vector<char> own(1 + *std::max_element(group.begin(), group.end()), 0);
+  own[start] = 1;
+  std::vector<Vector2d> taken;
+  for (bool more = true; more;) {
+    more = false;
+    taken.clear();
+    Eigen::AlignedBox2d box;
+    for (size_t i = 0; i < places.size(); ++i)
+      if (own[group[i]]) taken.push_back(places[i]), box.extend(places[i]);
+    const double gap = std::max(options.gap_px * footprint, options.gap * box.sizes().norm());
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (own[group[i]] || box.exteriorDistance(places[i]) > gap) continue;
+      more |= own[group[i]] = std::any_of(taken.begin(), taken.end(), [&](const Vector2d& p) {
+        return (p - places[i]).squaredNorm() < gap * gap;
+      });
+    }
+  }
+  return taken;
+}
+
 double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
 }
@@ -156,6 +182,38 @@ bool is_inside(const std::vector<Vector2d>& polygon, const Vector2d& p) {
   return !polygon.empty();
 }
 
+// Positions of the points that others on the same line bear out.
+std::vector<Vector3d> borne_out(const std::vector<EdgePoint>& points, double footprint,
+                                const RegionOptions& options) {
+  const double reach = options.line_px * footprint, aside = options.table_px * footprint;
+  using Cell = std::array<int, 3>;
+  const auto cell_of = [reach](const Vector3d& x) {
+    return Cell{int(std::floor(x.x() / reach)), int(std::floor(x.y() / reach)),
+                int(std::floor(x.z() / reach))};
+  };
+  std::map<Cell, std::vector<int>> in_cell;
+  for (size_t i = 0; i < points.size(); ++i) in_cell[cell_of(points[i].position)].push_back(int(i));
+  const auto bears_out = [&](const EdgePoint& p, const EdgePoint& q) {
+    const Vector3d d = q.position - p.position;
+    return d.norm() < reach && d.cross(p.tangent).norm() < aside &&
+           std::abs(p.tangent.dot(q.tangent)) > kSameDirection;
+  };
+  std::vector<Vector3d> out;
+  for (const EdgePoint& p : points) {
+    const Cell c = cell_of(p.position);
+    int others = -1;  // it meets itself
+    double views = 0;
+    for (int k = 0; k < 27; ++k) {
+      const auto near = in_cell.find({c[0] + k / 9 - 1, c[1] + k / 3 % 3 - 1, c[2] + k % 3 - 1});
+      if (near == in_cell.end()) continue;
+      for (const int j : near->second)
+        if (bears_out(p, points[j])) ++others, views += points[j].views - options.min_views;
+    }
+    if (others > 0 && views >= options.line_views) out.push_back(p.position);
+  }
+  return out;
+}
+
 Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points, double margin) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) {
@@ -170,14 +228,17 @@ Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points, double margin) {
 bool ObjectRegion::contains(const Vector3d& point) const {
   if (box.isEmpty()) return true;
   if (!box.contains(point)) return false;
-  return outline.empty() || is_inside(outline, frame * point);
+  if (!table) return true;
+  const bool on_table = table->signedDistance(point) < above;
+  return is_inside(on_table ? outline_on_table : outline, frame * point);
 }
 
-ObjectRegion find_object(const std::vector<Vector3d>& points, const std::vector<Vector3d>& cameras,
+ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Vector3d>& cameras,
                          const Vector3d& middle, double reach, double footprint,
                          const RegionOptions& options) {
   ObjectRegion region;
   const double margin = options.margin_px * footprint;
+  const std::vector<Vector3d> points = borne_out(all, footprint, options);
   if (points.empty() || cameras.empty()) return region;
   region.box = box_of(points, margin);
   const std::optional<Plane> table = find_table(points, cameras, footprint, options);
@@ -192,21 +253,24 @@ ObjectRegion find_object(const std::vector<Vector3d>& points, const std::vector<
   int count = 0;
   const std::vector<int> group = group_of(places, 0.5 * options.gap_px * footprint, &count);
   std::vector<double> weight(count);
+  const double near = kNear * reach;
   for (size_t i = 0; i < places.size(); ++i)
     weight[group[i]] +=
-        std::exp(-2 * (places[i] - region.frame * middle).squaredNorm() / (reach * reach));
+        std::exp(-0.5 * (places[i] - region.frame * middle).squaredNorm() / (near * near));
   if (count == 0) return region;
   const int best = int(std::max_element(weight.begin(), weight.end()) - weight.begin());
-  std::vector<Vector2d> own;
-  for (size_t i = 0; i < places.size(); ++i)
-    if (group[i] == best) own.push_back(places[i]);
+  const std::vector<Vector2d> own = grown(places, group, best, footprint, options);
   region.table = table;
-  region.outline = convex_hull(widened(own, margin));
+  region.above = options.above_px * footprint;
+  region.outline = convex_hull(widened(own, options.reach_px * footprint));
+  region.outline_on_table = convex_hull(widened(own, margin));
   std::vector<Vector3d> inside;
   for (const Vector3d& p : points)
-    if (table->signedDistance(p) > -margin && is_inside(region.outline, region.frame * p))
+    if (table->signedDistance(p) > region.above && is_inside(region.outline, region.frame * p)) {
       inside.push_back(p);
-  region.box = box_of(inside, margin);
+      inside.push_back(table->projection(p));  // it stands there, whether that is seen or not
+    }
+  region.box = box_of(inside, options.reach_px * footprint);
   return region;
 }
 
