@@ -29,8 +29,9 @@ install(FILES ${written}/sketchsplat DESTINATION share/bash-completion/completio
 install(FILES ${written}/_sketchsplat DESTINATION share/zsh/vendor-completions COMPONENT program)
 install(FILES ${written}/sketchsplat.fish DESTINATION share/fish/vendor_completions.d
   COMPONENT program)
-install(FILES README.md OPTIONS.md CHANGELOG.md docs/batch.md cmake/copyright
+install(FILES README.md LICENSE OPTIONS.md CHANGELOG.md cmake/copyright
   DESTINATION share/doc/sketchsplat COMPONENT program)
+install(DIRECTORY docs DESTINATION share/doc/sketchsplat COMPONENT program)
 install(PROGRAMS eval/abc_nef_table.py DESTINATION share/sketchsplat COMPONENT program)
 install(PROGRAMS scripts/slurm/array.sh scripts/slurm/merge.sh scripts/slurm/one_node.sh
   scripts/slurm/submit.sh DESTINATION share/sketchsplat/slurm COMPONENT program)

@@ -42,7 +42,7 @@ void register_fields(CLI::App* app, const std::vector<Field>& fields, Texts* tex
             for (const std::string& text : given) all += (all.empty() ? "" : "\n") + text;
             if (field.value_optional && all.empty()) all = "-";
           });
-      option->allow_extra_args(field.positional);  // --name takes one at a time
+      option->allow_extra_args(field.positional || field.takes_more);
       if (field.value_optional) option->expected(0, 1)->take_last();
       continue;
     }

@@ -13,6 +13,7 @@
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/confidence.h"
+#include "pipelines/known_scale.h"
 #include "pipelines/outputs.h"
 #include "pipelines/overlay.h"
 #include "pipelines/print_json.h"
@@ -50,11 +51,12 @@ std::string format_of(const std::string& path) {
 }
 
 // What sketch.json holds beside the sketch: the options, the names of the views.
-std::string other_members(const std::string& path, bool without_proposed) {
+std::string other_members(const std::string& path, bool without_proposed, const KnownScale& scale) {
   std::ifstream in(path);
   nlohmann::ordered_json j = parse_json<nlohmann::ordered_json>(in, path);
   for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
   if (without_proposed) j.erase("proposed");
+  if (!scale.source.empty()) j["scale"] = nlohmann::ordered_json::parse(scale_json(scale));
   return j.dump();
 }
 
@@ -83,10 +85,18 @@ Sketch with_proposed(Sketch sketch, const std::string& given) {
   return sketch;
 }
 
-void write(std::ostream& out, const Sketch& sketch, const ExportArguments& arguments,
-           const std::string& format) {
-  const std::string name = std::filesystem::path(arguments.out).stem().string();
+// From the options, or else from the file.
+KnownScale scale_of(const Sketch& sketch, const ExportArguments& arguments) {
   const CadOptions& cad = arguments.cad;
+  if (!cad.scale_given && cad.scale_by.empty())
+    return stated_scale(cad, sketch_file(arguments.sketch));
+  return known_scale(cad, sketch, sketch_origin(arguments.sketch).footprint, {});
+}
+
+void write(std::ostream& out, const Sketch& sketch, const ExportArguments& arguments,
+           const KnownScale& scale, const std::string& format) {
+  const std::string name = std::filesystem::path(arguments.out).stem().string();
+  const CadOptions cad = at_scale(arguments.cad, scale);
   if (format == "step") {
     write_step(out, sketch, step_options(sketch, name, cad));
   } else if (format == "dxf") {
@@ -104,7 +114,7 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
     write_parametric_edges(out, sketch);
   } else {
     write_sketch_json(out, sketch,
-                      other_members(sketch_file(arguments.sketch), arguments.proposed));
+                      other_members(sketch_file(arguments.sketch), arguments.proposed, scale));
   }
 }
 
@@ -112,6 +122,12 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
 void check(const ExportArguments& arguments, const std::string& format) {
   const bool cad =
       format == "step" || format == "dxf" || format == "svg" || format == "obj" || format == "glb";
+  check_scale(arguments.cad);
+  if (wants_tags(arguments.cad))
+    throw UsageError("--scale-by tag is for reconstruct: a sketch holds no tags");
+  if (!cad && format != "sketch" && !arguments.cad.scale_by.empty())
+    throw UsageError("--scale-by is for step, dxf, svg, obj and sketch: " + format +
+                     " is in the scene's own units");
   if (!cad && arguments.cad.scale != 1)
     throw UsageError("--scale is for step, dxf, svg, obj and glb: " + format +
                      " is in the scene's own units");
@@ -137,8 +153,9 @@ void run_export(const ExportArguments& arguments, bool json, Progress* progress)
   Sketch all = read_sketch(arguments.sketch);
   if (arguments.proposed) all = with_proposed(all, arguments.sketch);
   const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
+  const KnownScale scale = scale_of(all, arguments);
   write_atomically(arguments.out,
-                   [&](std::ostream& out) { write(out, sketch, arguments, format); });
+                   [&](std::ostream& out) { write(out, sketch, arguments, scale, format); });
   const int left_out = all.size() - sketch.size();
   if (json)
     print_json({{"file", arguments.out},
@@ -175,7 +192,7 @@ Verb export_verb() {
   verb.summary = "Write a sketch in another format";
   verb.examples = {"sketchsplat export out/part/sketch.json --out part.step --unit inch --scale 2",
                    "sketchsplat export out/part -o part.step --faces --scale 50",
-                   "sketchsplat export out/part -o part.dxf --scale 50",
+                   "sketchsplat export out/part -o part.dxf --scale-by circle:12=25.4mm",
                    "sketchsplat export out/part -o part.obj --deflection 1e-5"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {

@@ -38,6 +38,7 @@ struct Field {
   std::string unless;  ///< a required option need not be given if this one is
   bool positional = false;
   bool several = false;  ///< a text that may be given many times, joined by '\n'
+  bool takes_more = false;  ///< all values up to the next flag, not one at a time
   bool value_optional = false;  ///< "--name" alone is a text "-"
   bool alone = false;    ///< a flag that is a task of its own: nothing else is required then
   std::function<void()> applied;  ///< called after a user's value was assigned; may be empty

@@ -2,12 +2,14 @@
 #include "pipelines/likelihood.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sketchsplat {
 namespace {
 
 constexpr int kEvery = 3;      // samples: the hull is coarse
+constexpr int kRates = 10;     // shares of the views that see an edge, over which is integrated
 constexpr int kManyViews = 8;  // see most strokes that are edges
 
 // Logarithms of the widths of edgels on strokes that many views see.
@@ -96,16 +98,25 @@ double StrokeJudge::nats(int stroke, const EdgelFlags* others) const {
     }
   const bool blind = world_.hull.empty();
   double sum = 0;
+  // Without a hull nobody knows how many views something hides it from: all shares are as likely.
+  std::array<double, kRates> blind_sum = {};
   for (int v = 0; v < views; ++v) {
     const InView& in = in_view_[stroke][v];
     if (!(in.inside > 0)) continue;
     const double places = std::max(in.inside * (end - first), double(edgels[v]));
     const double ratio = (found[v] + (places - edgels[v]) * model_.miss) / places;
-    const double rate = blind ? model_.blind_rate
-                              : in.sure * model_.sure_rate + (1 - in.sure) * model_.unsure_rate;
+    const double rate = in.sure * model_.sure_rate + (1 - in.sure) * model_.unsure_rate;
     sum += in.inside * std::log(1 - rate + rate * ratio);
+    for (int k = 0; k < kRates; ++k) {
+      const double share = (k + 0.5) / kRates;
+      blind_sum[k] += in.inside * std::log(1 - share + share * ratio);
+    }
   }
-  return sum;
+  if (!blind) return sum;
+  const double most = *std::max_element(blind_sum.begin(), blind_sum.end());
+  double mean = 0;
+  for (const double s : blind_sum) mean += std::exp(s - most) / kRates;
+  return most + std::log(mean);
 }
 
 }  // namespace sketchsplat

@@ -2,6 +2,9 @@
 #include "pipelines/options.h"
 
 #include <cmath>
+#include <sstream>
+
+#include "pipelines/scale_reference.h"
 
 namespace sketchsplat {
 namespace {
@@ -181,6 +184,36 @@ void list_surfels(DetectionOptions* all, Fields* f) {
          "Edges of the image so near say where an edge is; 0 leaves it to the surfels");
 }
 
+// Six numbers with commas between.
+Eigen::AlignedBox3d parse_box(const std::string& text) {
+  double x[6];
+  char comma[6] = {};
+  std::istringstream in(text);
+  bool good = true;
+  for (int k = 0; k < 6 && good; ++k) {
+    good = bool(in >> x[k]) && std::isfinite(x[k]);
+    if (good && k < 5) good = in.get(comma[k]) && comma[k] == ',';
+  }
+  Eigen::AlignedBox3d box;
+  if (good) {
+    box.extend(Eigen::Vector3d(x[0], x[1], x[2]));
+    box.extend(Eigen::Vector3d(x[3], x[4], x[5]));
+  }
+  if (!good || !(in >> std::ws).eof() || !(box.sizes().minCoeff() > 0))
+    throw UsageError("--box: expected two opposite corners as x0,y0,z0,x1,y1,z1, got '" + text +
+                     "'");
+  return box;
+}
+
+void list_region(ReconstructOptions* o, Fields* f) {
+  f->group("The object, and the time");
+  f->add("box", &o->box_text, "x0,y0,z0,x1,y1,z1",
+         "Only what lies in this box, in world units, is the object")
+      .applied = [o] { o->box = parse_box(o->box_text); };
+  f->add("budget", &o->budget, "s", 0, 1e9,
+         "Stop refining after this time, and report; 0: never. Results depend on the machine then");
+}
+
 }  // namespace
 
 void list_fields(DetectionOptions* o, Fields* f) {
@@ -212,6 +245,10 @@ void list_fields(ReconstructOptions* o, Fields* f) {
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
   list_fields(static_cast<DetectionOptions*>(o), f);
+  Field& like = f->add("like", &o->like, "SKETCH",
+                       "Results of siblings, parts of the same family: a start from what they have "
+                       "in common");
+  like.several = like.takes_more = true;
   list_lift(&o->lift, f);
   list_link(&o->link, f);
   list_segment(&o->segment, f);
@@ -241,12 +278,19 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("regularize", &o->regularize.on,
          "Let strokes share directions, planes, axes and radii where that is simpler");
   f->add("min-confidence", &o->min_confidence, "", 0, 1, "Less probable strokes are left out");
+  list_region(o, f);
 }
 
 void list_fields(CadOptions* o, Fields* f) {
   f->group("Files for CAD programs");
-  f->choose("unit", &o->unit, length_unit_names(), "Unit of the lengths in the file");
-  f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit");
+  f->choose("unit", &o->unit, length_unit_names(), "Unit of the lengths in the file")
+      .applied = [o] { o->unit_given = true; };
+  f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit")
+      .applied = [o] { o->scale_given = true; };
+  f->add("scale-by", &o->scale_by, "WHAT=LENGTH",
+         "The same from what is known: tag (edge of an AprilTag's black square), size, diameter (of "
+         "the largest circle), circle:N, line:N or nodes:N-M")
+      .applied = [o] { parse_scale_reference(o->scale_by); };
   f->add("faces", &o->faces, "Write closed planar loops as faces in STEP");
   f->add("face-tolerance", &o->face.tolerance, "of the extent", 1e-9, 0.1,
          "Distance of a face's edges from its plane");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What pages share.
 const $ = id => document.getElementById(id);
 function add(parent, tag, text, cls) {

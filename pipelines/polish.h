@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "pipelines/deadline.h"
 #include "pipelines/observe.h"
 #include "sketches/sketch.h"
 
@@ -17,6 +18,7 @@ struct PolishOptions {
   double smooth_sigma_deg =
       0.2;                 ///< [deg] standard deviation of what is left between their tangents
   double stop_px = 0.002;  ///< [px] no sample moved farther: done
+  Deadline deadline;       ///< no second round after it
 };
 
 /// Moves the strokes onto the edgels of all views: match, then least squares with a robust weight

@@ -83,6 +83,7 @@ Json json_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json curves_json(const Sketch& sketch, const Extent& extent) {
   Json curves = Json::array();
+  const std::vector<int> curve = chain_of_strokes(curve_chains(sketch), sketch.size());
   for (int s = 0; s < sketch.size(); ++s) {
     const double length = stroke_length(sketch, s);
     const Evidence e = s < int(sketch.evidence.size()) ? sketch.evidence[s] : Evidence();
@@ -91,6 +92,7 @@ Json curves_json(const Sketch& sketch, const Extent& extent) {
         {{"kind", kind_name(sketch.strokes[s].kind)},
          {"nodes", {sketch.strokes[s].begin, sketch.strokes[s].end}},
          {"views", e.views},
+         {"curve", curve[s]},
          {"length", length},
          {"opacity", e.opacity},
          {"support_views", e.support_views},
@@ -160,6 +162,8 @@ std::string report_json(const ReportInput& input) {
     json["peak_mb"] = peak_memory_mb();
   }
   json["counts"] = counts_json(input);
+  if (input.scale && !input.scale->source.empty())
+    json["scale"] = Json::parse(scale_json(*input.scale));
   json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;
   json["strokes"] = Json::array();

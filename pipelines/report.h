@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipelines/known_scale.h"
 #include "pipelines/page_photos.h"
 #include "pipelines/reconstruct.h"
 
@@ -15,10 +16,11 @@ struct ReportInput {
   const Scene* scene;
   std::string options_json;   ///< object of option -> value (fields_json)
   bool reproducible = false;  ///< without seconds, memory and threads
+  const KnownScale* scale = nullptr;  ///< null: nobody knows
 };
 
-/// report.json: seconds per stage, peak memory, counts, rounds, warnings, options, version, commit,
-/// threads.
+/// report.json: seconds per stage, peak memory, counts, the scale if somebody knows it, rounds,
+/// warnings, options, version, commit, threads.
 std::string report_json(const ReportInput& input);
 
 struct ReportImage {
