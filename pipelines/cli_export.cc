@@ -15,10 +15,12 @@
 #include "pipelines/confidence.h"
 #include "pipelines/known_scale.h"
 #include "pipelines/outputs.h"
+#include "pipelines/overlay.h"
 #include "pipelines/print_json.h"
 #include "pipelines/report.h"
 #include "pipelines/sketch_input.h"
 #include "sketches/io.h"
+#include "sketches/io_glb.h"
 #include "sketches/json_text.h"
 
 namespace sketchsplat {
@@ -34,15 +36,15 @@ struct ExportArguments {
   double spacing = OutputOptions().point_spacing;
 };
 
-const std::vector<std::string> kFormats = {"step", "dxf",        "svg",   "obj",
-                                           "ply",  "parametric", "sketch"};
+const std::vector<std::string> kFormats = {"step", "dxf", "svg",        "obj",
+                                           "glb",  "ply", "parametric", "sketch"};
 
 // The format that the ending of a file name stands for; empty if none.
 std::string format_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".step" || ending == ".stp") return "step";
-  for (const char* same : {"dxf", "svg", "obj", "ply"})
+  for (const char* same : {"dxf", "svg", "obj", "glb", "ply"})
     if (ending == std::string(".") + same) return same;
   if (ending == ".json") return "parametric";
   return "";
@@ -103,6 +105,8 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
     write_svg(out, sketch, {name, cad.scale, cad.unit});
   } else if (format == "obj") {
     write_obj(out, sketch, arguments.deflection, cad.scale);
+  } else if (format == "glb") {
+    write_glb(out, sketch, {name, cad.scale * millimetres(cad.unit) / 1000, kind_color});
   } else if (format == "ply") {
     const double size = sketch_extent(sketch).size;
     write_edge_points(out, sketch, arguments.spacing * (size > 0 ? size : 1));
@@ -116,7 +120,8 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
 
 // Options that the format cannot obey.
 void check(const ExportArguments& arguments, const std::string& format) {
-  const bool cad = format == "step" || format == "dxf" || format == "svg" || format == "obj";
+  const bool cad =
+      format == "step" || format == "dxf" || format == "svg" || format == "obj" || format == "glb";
   check_scale(arguments.cad);
   if (wants_tags(arguments.cad))
     throw UsageError("--scale-by tag is for reconstruct: a sketch holds no tags");
@@ -124,7 +129,7 @@ void check(const ExportArguments& arguments, const std::string& format) {
     throw UsageError("--scale-by is for step, dxf, svg, obj and sketch: " + format +
                      " is in the scene's own units");
   if (!cad && arguments.cad.scale != 1)
-    throw UsageError("--scale is for step, dxf, svg and obj: " + format +
+    throw UsageError("--scale is for step, dxf, svg, obj and glb: " + format +
                      " is in the scene's own units");
   if (format != "step" && arguments.cad.faces)
     throw UsageError("--faces is for step: " + format + " holds curves only");

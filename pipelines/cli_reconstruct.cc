@@ -11,6 +11,7 @@
 
 #include "datasets/errors.h"
 #include "datasets/frame.h"
+#include "datasets/open_options.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/estimate.h"
@@ -26,7 +27,7 @@ namespace {
 
 struct ReconstructArguments {
   std::string scene, out;
-  std::string format;  // empty: found out
+  OpenOptions open;
   bool dry_run = false;
   std::string images;  // photographs without cameras, instead of a scene
   std::string masks;
@@ -132,7 +133,7 @@ Scene open_views(const ReconstructArguments& arguments, const CommonOptions& com
                  RunReport* report, Progress* progress) {
   Scene scene;
   if (arguments.images.empty()) {
-    scene = open_scene(arguments.scene, arguments.format);
+    scene = open_scene(arguments.scene, arguments.open);
   } else {
     prepare_output_folder(arguments.out);
     std::error_code none;
@@ -187,8 +188,10 @@ Verb reconstruct_verb() {
   Field& out = f.add("out", &arguments->out, "DIR", "The folder to write into, made if missing");
   out.required = true;
   out.short_name = "o";
-  f.choose("format", &arguments->format, scene_formats(),
+  f.choose("format", &arguments->open.format, scene_formats(),
            "What the folder is; if left out, its files decide");
+  f.add("allow-outside", &arguments->open.allow_outside,
+        "Read images that the scene file places outside of its folder, too");
   f.add("dry-run", &arguments->dry_run,
         "Say what would be read, how long it would take, and how much memory");
   f.add("images", &arguments->images, "DIR",

@@ -3,8 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -24,11 +23,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kObjDeflection = 1e-4;  // of the extent
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 // The picture under an overlay; white if it cannot be read any more.
 Picture background(const View& view, RunReport* report, Progress* progress) {
   try {
@@ -39,18 +33,26 @@ Picture background(const View& view, RunReport* report, Progress* progress) {
   }
 }
 
-std::vector<ReportImage> write_overlays(const std::string& folder, const Sketch& sketch,
-                                        const Scene& scene, int count, RunReport* report,
-                                        Progress* progress) {
-  std::vector<ReportImage> images;
+// Returns how many.
+int write_overlays(const std::string& folder, const Sketch& sketch, const Scene& scene, int count,
+                   RunReport* report, Progress* progress) {
+  int written = 0;
   for (const int v : spread_views(scene.views, sketch_extent(sketch).center, count)) {
     const View& view = scene.views[v];
     const Picture overlay = draw_overlay(sketch, view, background(view, report, progress));
-    const std::string path = folder + "/overlay_" + fs::path(view.name).stem().string() + ".png";
-    write_png(path, overlay);
-    images.push_back({view.name, bytes_of(path)});
+    write_png(folder + "/overlay_" + fs::path(view.name).stem().string() + ".png", overlay);
+    ++written;
   }
-  return images;
+  return written;
+}
+
+// Where the views stand that the evidence counts.
+std::vector<Eigen::Vector3d> viewpoints(const Reconstruction& reconstruction, const Scene& scene) {
+  std::map<std::string, Eigen::Vector3d> center;
+  for (const View& view : scene.views) center[view.name] = view.center_in_world();
+  std::vector<Eigen::Vector3d> points;
+  for (const std::string& name : reconstruction.views) points.push_back(center[name]);
+  return points;
 }
 
 // Overlays of an earlier run show other views, perhaps; nobody should take them for today's.
@@ -148,22 +150,25 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
   Fields all = method;
   list_fields(&output_options, &all);
   const Sketch& sketch = reconstruction.sketch;
-  std::vector<ReportImage> overlays;
+  ReportPage page = {&sketch};
   KnownScale scale;
   {
     Stage stage("write", 0, &reconstruction.report, progress);
     scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
     write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
     remove_old_overlays(folder);
-    overlays = write_overlays(folder, sketch, scene, output_options.overlays,
-                              &reconstruction.report, progress);
-    stage.result(std::to_string(overlays.size()) + " overlays");
+    const int overlays = write_overlays(folder, sketch, scene, output_options.overlays,
+                                        &reconstruction.report, progress);
+    page.viewpoints = viewpoints(reconstruction, scene);
+    if (overlays > 0) page.photos = page_photos(scene, sketch_extent(sketch).center);
+    stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +
+                 " photographs");
   }
   const std::string report = report_json(
       {&reconstruction, &scene, fields_json(all.list), output_options.reproducible, &scale});
   write_atomically(folder + "/report.json", [&](std::ostream& out) { out << report; });
   write_atomically(folder + "/report.html",
-                   [&](std::ostream& out) { out << report_html(report, sketch, overlays); });
+                   [&](std::ostream& out) { out << report_html(report, page); });
   return scale;
 }
 
