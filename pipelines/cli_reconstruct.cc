@@ -88,8 +88,8 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
   if (missing > 0) std::cout << ", " << missing << " edge maps missing";
   std::cout << "\nroughly " << rough_duration(load.seconds) << " with " << threads
             << (threads == 1 ? " thread" : " threads")
-            << (photographs ? " after COLMAP, which takes far longer, " : ", ") << std::lround(load.memory_mb)
-            << " MB, into " << arguments.out << "\n";
+            << (photographs ? " after COLMAP, which takes far longer, " : ", ")
+            << std::lround(load.memory_mb) << " MB, into " << arguments.out << "\n";
 }
 
 void tell_result(const Sketch& sketch, const ReconstructArguments& arguments, bool json) {
@@ -165,9 +165,9 @@ Verb reconstruct_verb() {
   f.choose("format", &arguments->format, scene_formats(),
            "What the folder is; if left out, its files decide");
   f.add("dry-run", &arguments->dry_run,
-        "Say what would be read, how long it would take, and how much memory");
+        "Say what would be read, how long it takes, how much memory");
   f.add("images", &arguments->images, "DIR",
-        "Photographs without cameras: COLMAP finds them first, into colmap/ of --out");
+        "Photographs without cameras: COLMAP finds them first");
   f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
   list_fields(&arguments->method, &f);
   list_fields(&arguments->output, &f);

@@ -101,16 +101,20 @@ function makeViewer(canvas, items, look, picked) {
   };
   program = gl.createProgram();
   gl.attachShader(program, shader(gl.VERTEX_SHADER, `#version 300 es
-    in vec3 a, b, rgb; in float id; uniform mat4 m; uniform vec2 size; uniform float width, selected; out vec3 c;
+    in vec3 a, b, rgb; in float id; uniform mat4 m; uniform vec2 size;
+    uniform float width, selected; out vec3 c;
     void main() {
       vec4 p = m * vec4(a, 1.), q = m * vec4(b, 1.);
       float near = 1e-4;  // cut at the camera's plane
       if (p.w < near && q.w < near) { gl_Position = vec4(2., 2., 2., 1.); return; }
-      if (p.w < near) p = mix(p, q, (near - p.w) / (q.w - p.w)); else if (q.w < near) q = mix(q, p, (near - q.w) / (p.w - q.w));
-      vec2 d = (q.xy / q.w - p.xy / p.w) * size; float l = length(d); d = l > 1e-6 ? d / l : vec2(1., 0.);
+      if (p.w < near) p = mix(p, q, (near - p.w) / (q.w - p.w));
+      else if (q.w < near) q = mix(q, p, (near - q.w) / (p.w - q.w));
+      vec2 d = (q.xy / q.w - p.xy / p.w) * size; float l = length(d);
+      d = l > 1e-6 ? d / l : vec2(1., 0.);
       bool on = id == selected; float w = on ? width * 2.2 : width;
       vec4 e = (gl_VertexID & 1) == 0 ? p : q;
-      vec2 o = vec2(-d.y, d.x) * ((gl_VertexID & 2) == 0 ? -1. : 1.) + d * ((gl_VertexID & 1) == 0 ? -.5 : .5);
+      vec2 o = vec2(-d.y, d.x) * ((gl_VertexID & 2) == 0 ? -1. : 1.)
+          + d * ((gl_VertexID & 1) == 0 ? -.5 : .5);
       e.xy += o * w / size * e.w;
       if (on) e.z -= .01 * e.w;
       gl_Position = e; c = on ? vec3(.92, .70, .03) : rgb;

@@ -12,13 +12,12 @@ namespace sketchsplat {
 // The method. Images become edgels, edgels points in space, points strokes; then rounds of drawing
 // the strokes into the views, moving them and simplifying the graph, until nothing changes; and the
 // same once more with what is found in the edgels that are left.
-Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
-                           Progress* progress) {
+Reconstruction reconstruct(const Scene& scene, Detector* detector,
+                           const ReconstructOptions& options, Progress* progress) {
   RunReport report;
   report.warnings = scene.warnings;
 
-  const std::unique_ptr<Detector> detector = make_detector(options);
-  const EdgeWorld all = detect_scene(scene, detector.get(), options, &report, progress);
+  const EdgeWorld all = detect_scene(scene, detector, options, &report, progress);
   const EdgeWorld world = focus_on_object(all, options, &report, progress);
   const std::vector<EdgePoint> points = lift_scene(world, options, &report, progress);
   Sketch sketch = fit_strokes(points, world, options, &report, progress);
@@ -37,6 +36,11 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   const Sketch proposed = propose_hidden(sketch, world, &report);
   return {sketch, report, proposed, view_names(world)};
+}
+
+Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
+                           Progress* progress) {
+  return reconstruct(scene, make_detector(options).get(), options, progress);
 }
 
 }  // namespace sketchsplat

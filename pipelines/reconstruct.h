@@ -20,5 +20,8 @@ struct Reconstruction {
 /// InputError if the detector needs files that are not there. `progress` may be null.
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
                            Progress* progress);
+/// The same with a detector that somebody else has made; `options.detector` does not count.
+Reconstruction reconstruct(const Scene& scene, Detector* detector,
+                           const ReconstructOptions& options, Progress* progress);
 
 }  // namespace sketchsplat

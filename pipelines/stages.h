@@ -12,9 +12,9 @@
 
 namespace sketchsplat {
 
-/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are left
-/// out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError if no
-/// image, or no map of that name, can be read.
+/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are
+/// left out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError
+/// if no image, or no map of that name, can be read.
 EdgeWorld detect_scene(const Scene& scene, Detector* detector, const ReconstructOptions& options,
                        RunReport* report, Progress* progress);
 
