@@ -45,6 +45,6 @@ grep -qE '^F5 (100|9[0-9])' "$folder/box" || fail "a box is not found: $(cat "$f
 module=$(find "$prefix" -name 'sketchsplat*.so' -path '*packages*')
 if [ -n "$module" ]; then
   PYTHONPATH=$(dirname "$module") SKETCHSPLAT_BINARY=$build/pipelines/sketchsplat \
-    python3 "$source/tests/library/python_test.py" || fail "the Python module"
+    "${PYTHON:-python3}" "$source/tests/library/python_test.py" || fail "the Python module"
 fi
 echo passed
