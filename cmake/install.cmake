@@ -7,6 +7,27 @@ install(TARGETS sketchsplat RUNTIME DESTINATION bin COMPONENT program)
 install(TARGETS sketchsplat_charts sketchsplat_image_formats sketchsplat_synthesis
   LIBRARY DESTINATION lib/sketchsplat COMPONENT program)
 
+# The library for programs of others: find_package(sketchsplat), sketchsplat::sketchsplat.
+include(CMakePackageConfigHelpers)
+install(TARGETS sketchsplat_library EXPORT sketchsplat_targets
+  LIBRARY DESTINATION lib COMPONENT library)
+install(TARGETS sketchsplat_image_formats LIBRARY DESTINATION lib/sketchsplat COMPONENT library)
+install(DIRECTORY include/sketchsplat DESTINATION include COMPONENT library)
+install(EXPORT sketchsplat_targets FILE sketchsplatTargets.cmake NAMESPACE sketchsplat::
+  DESTINATION lib/cmake/sketchsplat COMPONENT library)
+configure_package_config_file(cmake/sketchsplatConfig.cmake.in
+  ${CMAKE_BINARY_DIR}/generated/sketchsplatConfig.cmake
+  INSTALL_DESTINATION lib/cmake/sketchsplat)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/generated/sketchsplatConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/generated/sketchsplatConfig.cmake
+  ${CMAKE_BINARY_DIR}/generated/sketchsplatConfigVersion.cmake
+  DESTINATION lib/cmake/sketchsplat COMPONENT library)
+if(TARGET sketchsplat_python)
+  install(TARGETS sketchsplat_python LIBRARY DESTINATION ${SKETCHSPLAT_PYTHON_FOLDER}
+    COMPONENT library)
+endif()
+
 # Pages and completions are what the program itself says.
 set(written ${CMAKE_BINARY_DIR}/generated/share)
 file(MAKE_DIRECTORY ${written})

@@ -148,9 +148,7 @@ Prediction read_json(const std::string& path) {
     if (document.contains("strokes")) {
       in.clear();
       in.seekg(0);
-      const Sketch sketch = read_sketch_json(in, path);
-      const std::vector<CurveChain> chains = curve_chains(sketch);
-      for (size_t c = 0; c < chains.size(); ++c) add_curve(sketch, chains[c], int(c), &prediction);
+      prediction = prediction_of(read_sketch_json(in, path));
     } else if (document.contains("points")) {
       prediction.points_only = true;
       const auto points = groups_of<1>(document, {"points"}, path);
@@ -276,6 +274,13 @@ void read_strokes_beside(const fs::path& folder, Prediction* prediction) {
 }
 
 }  // namespace
+
+Prediction prediction_of(const Sketch& sketch) {
+  Prediction prediction;
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  for (size_t c = 0; c < chains.size(); ++c) add_curve(sketch, chains[c], int(c), &prediction);
+  return prediction;
+}
 
 bool has_prediction(const std::string& path) {
   std::error_code none;

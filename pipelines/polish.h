@@ -22,8 +22,8 @@ struct PolishOptions {
 };
 
 /// Moves the strokes onto the edgels of all views: match, then least squares with a robust weight
-/// (iteratively reweighted biweight), again and again until nothing moves. `last`, if given, becomes
-/// what was matched before the last move; it stays as it is if there is no round.
+/// (iteratively reweighted biweight), again and again until nothing moves. `last`, if given,
+/// becomes what was matched before the last move; it stays as it is if there is no round.
 Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options,
               Observation* last = nullptr);
 

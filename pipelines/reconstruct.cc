@@ -59,7 +59,7 @@ ReconstructOptions after_family(ReconstructOptions options, const FamilyStart& f
 // the strokes into the views, moving them and simplifying the graph, until nothing changes; and the
 // same once more with what is found in the edgels that are left. With siblings of the part, their
 // family's strokes, moved onto the edgels, come first, and the rest is for edgels that are left.
-Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& given,
+Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
   RunReport report;
@@ -67,8 +67,7 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& given,
 
   std::vector<TagSquare> tags;
   if (options.tags) tags = measure_tags(scene, &report, progress);
-  const std::unique_ptr<Detector> detector = make_detector(options);
-  const EdgeWorld all = detect_scene(scene, detector.get(), tags, options, &report, progress);
+  const EdgeWorld all = detect_scene(scene, detector, tags, options, &report, progress);
   const EdgeWorld world = focus_on_object(all, options, &report, progress);
   const FamilyStart family = start_from_siblings(world, options, &report, progress);
   const ReconstructOptions last = after_family(options, family);
@@ -85,6 +84,11 @@ Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& given,
   tell_stop(options, &report, progress);
   const Sketch proposed = propose_hidden(sketch, world, &report);
   return {sketch, report, proposed, view_names(world), tags};
+}
+
+Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
+                           Progress* progress) {
+  return reconstruct(scene, make_detector(options).get(), options, progress);
 }
 
 }  // namespace sketchsplat

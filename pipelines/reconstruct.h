@@ -23,5 +23,8 @@ struct Reconstruction {
 /// found is polished once and reported; the report says so. `progress` may be null.
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
                            Progress* progress);
+/// The same with a detector that somebody else has made; `options.detector` does not count.
+Reconstruction reconstruct(const Scene& scene, Detector* detector,
+                           const ReconstructOptions& options, Progress* progress);
 
 }  // namespace sketchsplat

@@ -13,9 +13,9 @@
 
 namespace sketchsplat {
 
-/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are left
-/// out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError if no
-/// image, or no map of that name, can be read. What lies on tags is left out.
+/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are
+/// left out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError
+/// if no image, or no map of that name, can be read. What lies on tags is left out.
 EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
                        const ReconstructOptions& options, RunReport* report, Progress* progress);
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # rules_test.sh SOURCE BUILD [RULE]: what holds of every file of the repository. Rules: licences,
-# packages, cgal, style_sheet, words.
+# packages, cgal, style_sheet, words, columns.
 set -uo pipefail
 build=$(readlink -f "$2")
 cd "$1"
@@ -57,6 +57,13 @@ words() {  # README.md is short, and what it and docs/ link to exists
   done
 }
 
-for rule in ${3:-licences packages cgal style_sheet words}; do $rule; done
+columns() {  # as .clang-format has it
+  local line
+  while read -r line; do fail "more than 100 columns: $line"; done < <(
+    sources \( -name '*.cc' -o -name '*.h' -o -name '*.py' -o -name '*.js' -o -name '*.css' \) |
+      LC_ALL=C.UTF-8 xargs grep -nE '^.{101,}' | cut -c1-80)
+}
+
+for rule in ${3:-licences packages cgal style_sheet words columns}; do $rule; done
 [ $failed = 0 ] && echo passed
 exit $failed

@@ -96,7 +96,8 @@ std::string input_hash(const std::string& folder) {
     const std::uintmax_t size = entry->file_size(none);
     std::string line =
         entry->path().lexically_relative(folder).string() + " " + std::to_string(size);
-    if (may_hold_cameras(entry->path()) && size <= kLargest) line += " " + hash_of_file(entry->path());
+    if (may_hold_cameras(entry->path()) && size <= kLargest)
+      line += " " + hash_of_file(entry->path());
     lines.push_back(line + "\n");
   }
   std::sort(lines.begin(), lines.end());
