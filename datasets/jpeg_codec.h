@@ -16,8 +16,8 @@ namespace sketchsplat {
 /// does not know.
 bool decode_jpeg(const std::string& bytes, int denominator, Planes* planes, std::string* found);
 
-/// Baseline JPEG of 8-bit rows of three interleaved channels; quality in [1, 100]. Returns false and
-/// says in `found` what is wrong.
+/// Baseline JPEG of 8-bit rows of three interleaved channels; quality in [1, 100]. Returns false
+/// and says in `found` what is wrong.
 bool encode_jpeg(const unsigned char* rows, int width, int height, int quality, std::string* bytes,
                  std::string* found);
 

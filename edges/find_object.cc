@@ -121,7 +121,8 @@ std::vector<int> group_of(const std::vector<Vector2d>& places, double cell, int*
   return out;
 }
 
-// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a gap.
+// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a
+// gap.
 std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
                             int start, double footprint, const RegionOptions& options) {
   std::vector<char> own(1 + *std::max_element(group.begin(), group.end()), 0);

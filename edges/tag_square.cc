@@ -26,7 +26,8 @@ constexpr int kRounds = 12;           // of measuring and solving
 constexpr double kSmallestCell = 3;   // [px] smaller cells blur into one another
 constexpr double kWidestWindow = 4;   // [px] to either side of an edge
 constexpr double kLeastRise = 0.04;   // of linear light from black to white
-constexpr double kStrayShare = 0.15;  // of the side in pixels, by which a corner may be off at first
+constexpr double kStrayShare =
+    0.15;  // of the side in pixels, by which a corner may be off at first
 constexpr double kStrayTimes = 5;     // the usual scatter: a view that does not fit
 constexpr double kBiweight = 4.685;   // Huber & Ronchetti, Robust Statistics, 2009
 constexpr double kShiftPx = 0.5;      // standard deviation of what a view makes of black's breadth

@@ -40,12 +40,12 @@ struct TagSquare {
 };
 
 /// The square of one tag from its sightings: where black borders white all over it is measured
-/// across the edges to a few hundredths of a pixel, and pose and side are least squares of that over
-/// all views, with a robust weight. A view may see all black broader or narrower (blur, ink,
+/// across the edges to a few hundredths of a pixel, and pose and side are least squares of that
+/// over all views, with a robust weight. A view may see all black broader or narrower (blur, ink,
 /// exposure): one number for each, which inner edges, that go both ways, part from the side. The
 /// sigma is that of the scatter between views (sandwich estimator, a view is a cluster: MacKinnon &
-/// White, J. Econometrics 1985), and at least what is left of pixels. None if fewer than three views
-/// agree, or if the tag is too small in them to be measured.
+/// White, J. Econometrics 1985), and at least what is left of pixels. None if fewer than three
+/// views agree, or if the tag is too small in them to be measured.
 std::optional<TagSquare> fit_tag(const std::vector<View>& views,
                                  const std::vector<const TagPatch*>& patches);
 
@@ -53,8 +53,8 @@ std::optional<TagSquare> fit_tag(const std::vector<View>& views,
 std::vector<TagSquare> fit_tags(const std::vector<View>& views,
                                 const std::vector<TagPatch>& patches);
 
-/// The side that all these tags have, if they are copies of one size, and its sigma: their mean with
-/// weights, and no surer than they agree. Precondition: there is one.
+/// The side that all these tags have, if they are copies of one size, and its sigma: their mean
+/// with weights, and no surer than they agree. Precondition: there is one.
 struct TagSide {
   double side = 0, sigma = 0;  ///< world units
 };

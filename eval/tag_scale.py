@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """How well does one AprilTag tell the scale, and does the stated sigma say so?
 
-Photographs of parts with a tag on the table (`synthesize --style photo`) are made for every seed, and
-`reconstruct --dry-run --scale-by tag=...` measures the tag in them. The true edge is known: written
+Photographs of parts with a tag on the table (`synthesize --style photo`) are made for every seed,
+and `reconstruct --dry-run --scale-by tag=...` measures the tag in them. The true edge is known: written
 are the error of the scale and the stated standard deviation, both relative, of each seed, and the
 RMS of the errors over that of the sigmas, which is 1 if these are honest.
 
@@ -38,8 +38,9 @@ def true_side(scene):
 def measure(arguments, seed):
     scene = f"{arguments.work}/{seed}"
     shutil.rmtree(scene, ignore_errors=True)
-    run([arguments.binary, "synthesize", PARTS[seed % len(PARTS)], "--out", scene, "--seed", str(seed),
-         "--style", "photo", "--views", str(arguments.views), "--resolution", str(arguments.resolution),
+    run([arguments.binary, "synthesize", PARTS[seed % len(PARTS)], "--out", scene,
+         "--seed", str(seed), "--style", "photo", "--views", str(arguments.views),
+         "--resolution", str(arguments.resolution),
          "--tag", str(seed), "--noise", "2", "--tag-size", str(arguments.tag_size),
          "--pose-error", str(arguments.pose_error), "--outputs", "none", "-q"])
     plan = json.loads(run([arguments.binary, "reconstruct", scene, "--out", scene + "/none",
@@ -61,7 +62,8 @@ def main():
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--views", type=int, default=50)
     parser.add_argument("--resolution", type=int, default=800, help="width [px]")
-    parser.add_argument("--tag-size", type=float, default=0.2, help="world units; the part is 1 long")
+    parser.add_argument("--tag-size", type=float, default=0.2,
+                        help="world units; the part is 1 long")
     parser.add_argument("--pose-error", type=float, default=0, help="RMS [px] of the cameras")
     parser.add_argument("--keep", action="store_true", help="the scenes")
     arguments = parser.parse_args()
@@ -72,7 +74,8 @@ def main():
     worst = max(abs(r[0]) for r in results)
     mean = sum(r[0] for r in results) / len(results)
     print(f"{len(results)} seeds: error RMS {100 * error:.4f} %, mean {100 * mean:+.4f} %, "
-          f"worst {100 * worst:.4f} %; stated {100 * sigma:.4f} %; RMS over stated {error / sigma:.2f}")
+          f"worst {100 * worst:.4f} %; stated {100 * sigma:.4f} %; "
+          f"RMS over stated {error / sigma:.2f}")
 
 
 if __name__ == "__main__":

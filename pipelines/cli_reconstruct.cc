@@ -108,8 +108,8 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
   if (missing > 0) std::cout << ", " << missing << " edge maps missing";
   std::cout << "\nroughly " << rough_duration(load.seconds) << " with " << threads
             << (threads == 1 ? " thread" : " threads")
-            << (photographs ? " after COLMAP, which takes far longer, " : ", ") << std::lround(load.memory_mb)
-            << " MB, into " << arguments.out << "\n";
+            << (photographs ? " after COLMAP, which takes far longer, " : ", ")
+            << std::lround(load.memory_mb) << " MB, into " << arguments.out << "\n";
   tell_scale(scale);
 }
 
@@ -191,11 +191,12 @@ Verb reconstruct_verb() {
   f.choose("format", &arguments->open.format, scene_formats(),
            "What the folder is; if left out, its files decide");
   f.add("allow-outside", &arguments->open.allow_outside,
-        "Read images that the scene file places outside of its folder, too");
+        "Read images that the scene file places outside of its folder, too")
+      .expert = true;
   f.add("dry-run", &arguments->dry_run,
-        "Say what would be read, how long it would take, and how much memory");
+        "Say what would be read, how long it takes, how much memory");
   f.add("images", &arguments->images, "DIR",
-        "Photographs without cameras: COLMAP finds them first, into colmap/ of --out");
+        "Photographs without cameras: COLMAP finds them first");
   f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
   list_fields(&arguments->method, &f);
   list_fields(&arguments->output, &f);
@@ -203,7 +204,6 @@ Verb reconstruct_verb() {
   verb.name = "reconstruct";
   verb.summary = "Turn calibrated images of an object into its edges as curves";
   verb.examples = {"sketchsplat reconstruct scenes/part --out out/part",
-                   "sketchsplat reconstruct scenes/part -o out/part --preset accurate --threads 4",
                    "sketchsplat reconstruct scenes/part -o out/part --detector maps:DexiNed",
                    "sketchsplat reconstruct --images photos -o out/part --masks masks",
                    "sketchsplat reconstruct scenes/part -o out/part --scale-by tag=10mm"};

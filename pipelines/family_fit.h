@@ -30,8 +30,8 @@ class FamilyFit {
   std::vector<Sibling> starts() const;
 
   /// Gauss-Newton on pose and numbers, by the distances to edgels that run the same way within a
-  /// reach that shrinks from a tenth of the object to 1.5 px, with the family's covariance as prior.
-  /// Places of a stroke in a view count as few: their errors go together.
+  /// reach that shrinks from a tenth of the object to 1.5 px, with the family's covariance as
+  /// prior. Places of a stroke in a view count as few: their errors go together.
   Sibling fit(Sibling start) const;
 
   Sketch sketch(const Sibling& sibling) const;

@@ -103,9 +103,9 @@ FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions
     if (!progress) continue;
     char line[200];
     std::snprintf(line, sizeof line, "%s %d is %s, %s: %.0f px, %d views, moves %.2f px, %.1f nat",
-                  kind_name(sketch.strokes[s].kind), s, verdict_name(chosen.verdicts[s]), freed.free[s] ? "free" : "held",
-                  chosen.stats[s].length_px, chosen.stats[s].views, chosen.stats[s].bias_px,
-                  chosen.nats[s]);
+                  kind_name(sketch.strokes[s].kind), s, verdict_name(chosen.verdicts[s]),
+                  freed.free[s] ? "free" : "held", chosen.stats[s].length_px, chosen.stats[s].views,
+                  chosen.stats[s].bias_px, chosen.nats[s]);
     progress->note(line);
   }
   const double explained = fit.explained(chosen.sketch);

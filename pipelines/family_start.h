@@ -13,12 +13,11 @@ struct FamilyStart {
   bool all_free = true;  ///< enough views see every stroke; else some are where the family has them
 };
 
-/// The part in the views, by its siblings (options.like): the member of their family that fits best,
-/// every stroke then moved onto its own edgels and judged as ever, but that siblings have it counts
-/// in its favour. Strokes that fewer than options.select.min_views views see stay with the family. The
-/// part is none of it, and the report says so, if too many of its edgels lie on no stroke, or too
-/// many strokes on no edgels.
-/// Throws InputError.
+/// The part in the views, by its siblings (options.like): the member of their family that fits
+/// best, every stroke then moved onto its own edgels and judged as ever, but that siblings have it
+/// counts in its favour. Strokes that fewer than options.select.min_views views see stay with the
+/// family. The part is none of it, and the report says so, if too many of its edgels lie on no
+/// stroke, or too many strokes on no edgels. Throws InputError.
 FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,
                            RunReport* report, Progress* progress);
 

@@ -237,7 +237,8 @@ KnownScale stated_scale(const CadOptions& options, const std::string& sketch_jso
   const bool has = s.contains("units_per_world") && s["units_per_world"].is_number();
   const double scale = has ? s["units_per_world"].get<double>() : 0;
   if (unit == names.end() || !(scale > 0) || !std::isfinite(scale))
-    throw InputError(sketch_json, "a unit and units_per_world as \"scale\"", s.dump().substr(0, 60));
+    throw InputError(sketch_json, "a unit and units_per_world as \"scale\"",
+                     s.dump().substr(0, 60));
   const LengthUnit stated = LengthUnit(unit - names.begin());
   if (!options.unit_given) out.unit = stated;
   out.units_per_world = scale * millimetres(stated) / millimetres(out.unit);

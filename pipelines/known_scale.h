@@ -31,9 +31,9 @@ struct KnownScale {
 };
 
 /// What the options say of the size of a sketch in world units, numbered as in its file.
-/// `footprint`: world length of a pixel at the part, 0 if unknown. The sigma of a curve is that which
-/// `inspect` gives it; the stated length counts as exact. Throws InputError if there is no such
-/// thing in the sketch or if tags differ in size.
+/// `footprint`: world length of a pixel at the part, 0 if unknown. The sigma of a curve is that
+/// which `inspect` gives it; the stated length counts as exact. Throws InputError if there is no
+/// such thing in the sketch or if tags differ in size.
 KnownScale known_scale(const CadOptions& options, const Sketch& sketch, double footprint,
                        const std::vector<TagSquare>& tags);
 

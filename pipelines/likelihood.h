@@ -20,8 +20,9 @@ struct EvidenceModel {
   double least_width_sigma = 0.05;  ///< of the logarithm of the width of sharp edges
 };
 
-/// Standard deviation [px] of the distances of edgels from the strokes that many views see, with all
-/// that cameras err; 0 if there is no such stroke. From the median: edgels of others do not matter.
+/// Standard deviation [px] of the distances of edgels from the strokes that many views see, with
+/// all that cameras err; 0 if there is no such stroke. From the median: edgels of others do not
+/// matter.
 double scatter_px(const EdgeWorld& world, const Observation& every);
 
 /// Judges the strokes of a sketch by the edgels of all views.

@@ -201,18 +201,17 @@ Eigen::AlignedBox3d parse_box(const std::string& text) {
     box.extend(Eigen::Vector3d(x[3], x[4], x[5]));
   }
   if (!good || !(in >> std::ws).eof() || !(box.sizes().minCoeff() > 0))
-    throw UsageError("--box: expected auto or two opposite corners as x0,y0,z0,x1,y1,z1, got '" + text +
-                     "'");
+    throw UsageError("--box: expected auto or two opposite corners as x0,y0,z0,x1,y1,z1, got '" +
+                     text + "'");
   return box;
 }
 
 void list_region(ReconstructOptions* o, Fields* f) {
-  f->group("The object, and the time");
   f->add("box", &o->box_text, "x0,y0,z0,x1,y1,z1|auto",
-         "Only what lies in this box, in world units, is the object; auto: masks say, or the table")
+         "What lies in this box is the object; auto: masks or the table tell")
       .applied = [o] { o->box = parse_box(o->box_text); };
   f->add("budget", &o->budget, "s", 0, 1e9,
-         "Stop refining after this time, and report; 0: never. Results depend on the machine then");
+         "Stop refining then and report; 0: never");
 }
 
 }  // namespace
@@ -289,8 +288,7 @@ void list_fields(CadOptions* o, Fields* f) {
   f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit")
       .applied = [o] { o->scale_given = true; };
   f->add("scale-by", &o->scale_by, "WHAT=LENGTH|none",
-         "The same from what is known: tag (edge of an AprilTag's black square), size, diameter (of "
-         "the largest circle), circle:N, line:N or nodes:N-M")
+         "The same from a known length: tag, size, diameter, circle:N, line:N, nodes:N-M")
       .applied = [o] { if (o->scale_by != "none") parse_scale_reference(o->scale_by); };
   f->add("faces", &o->faces, "Write closed planar loops as faces in STEP");
   f->add("face-tolerance", &o->face.tolerance, "of the extent", 1e-9, 0.1,
@@ -299,7 +297,6 @@ void list_fields(CadOptions* o, Fields* f) {
 }
 
 void list_fields(OutputOptions* o, Fields* f) {
-  f->group("Output");
   f->add("overlays", &o->overlays, "views", 0, 100, "Views over which the curves are drawn");
   f->add("point-spacing", &o->point_spacing, "of the extent", 1e-5, 1,
          "Distance of the samples in edge_points.ply")

@@ -57,11 +57,11 @@ words() {  # README.md is short, and what it and docs/ link to exists
   done
 }
 
-columns() {  # as .clang-format has it
+columns() {  # as .clang-format has it; texts of JSON may be longer
   local line
   while read -r line; do fail "more than 100 columns: $line"; done < <(
-    sources \( -name '*.cc' -o -name '*.h' -o -name '*.py' -o -name '*.js' -o -name '*.css' \) |
-      LC_ALL=C.UTF-8 xargs grep -nE '^.{101,}' | cut -c1-80)
+    sources \( -name '*.cc' -o -name '*.h' -o -name '*.py' \) |
+      LC_ALL=C.UTF-8 xargs grep -nE '^.{101,}' | grep -v 'R"(' | cut -c1-80)
 }
 
 for rule in ${3:-licences packages cgal style_sheet words columns}; do $rule; done

@@ -165,7 +165,8 @@ DeviationMixture PieceLikelihood::posterior(const DeviationPrior& prior) const {
   double total = 0;
   for (size_t i = 0; i < parts.size(); ++i) {
     if (weights[i] < kLeastWeight) continue;
-    out.parts.push_back(posterior(prior.scales[parts[i].scale], parts[i].wrong, kinds_[parts[i].kind]));
+    out.parts.push_back(
+        posterior(prior.scales[parts[i].scale], parts[i].wrong, kinds_[parts[i].kind]));
     out.weights.push_back(weights[i]);
     total += weights[i];
   }

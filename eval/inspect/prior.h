@@ -40,8 +40,9 @@ Eigen::MatrixXd rigid_deviations(const std::vector<EdgePlace>& places);
 
 /// The likelihood of the true deviation of a piece of an edge, from what was measured. Of what was
 /// measured, that which a small similarity explains is held against the prior; the rest, a wave,
-/// stays as it was measured. A scale is that of the whole similarity, or of its shift, turn or growth
-/// alone (a hole in the wrong place, a bore of the wrong size), and an eighth of that for the rest.
+/// stays as it was measured. A scale is that of the whole similarity, or of its shift, turn or
+/// growth alone (a hole in the wrong place, a bore of the wrong size), and an eighth of that for
+/// the rest.
 class PieceLikelihood {
  public:
   /// `rigid`: rigid_deviations(); `floor`: standard deviation that is always added.

@@ -204,7 +204,8 @@ std::string batch_options_json(const BatchRun& run) {
 
 std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, const BatchRun& run) {
   const std::string program = program_version() + "\n" + program_commit() + "\n" + run.open.format +
-                              (run.open.allow_outside ? " and beyond\n" : "\n") + batch_options_json(run);
+                              (run.open.allow_outside ? " and beyond\n" : "\n") +
+                              batch_options_json(run);
   std::vector<PlannedScene> planned;
   for (const BatchScene& scene : scenes) {
     SceneKey key = {hash_of(program), input_hash(scene.folder)};

@@ -114,8 +114,9 @@ bool has_truth(const std::string& folder) {
   }
 }
 
-std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes, const OpenOptions& options,
-                                   double patience_seconds, const std::function<void()>& step) {
+std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes,
+                                   const OpenOptions& options, double patience_seconds,
+                                   const std::function<void()>& step) {
   std::vector<SceneSize> sizes(scenes.size());
   for (int next = 0; next < int(scenes.size());) {
     int ends[2];

@@ -80,7 +80,8 @@ Picture draw(const View& view, const TagSquare& tag, const Shot& shot, std::mt19
   std::vector<Vector2d> ways;
   for (int j = 0; j < kRays; ++j)
     for (int i = 0; i < kRays; ++i)
-      for (const Vector2d& way : {Vector2d(1, 1), Vector2d(1, -1), Vector2d(-1, 1), Vector2d(-1, -1)})
+      for (const Vector2d& way :
+           {Vector2d(1, 1), Vector2d(1, -1), Vector2d(-1, 1), Vector2d(-1, -1)})
         ways.push_back(Vector2d((i + 0.5) / kRays - 0.5, (j + 0.5) / kRays - 0.5) +
                        shot.blur_px * way);
   Image<float> grey(view.camera.width, view.camera.height);

@@ -111,10 +111,11 @@ TEST(KnownScale, WhatIsNotThereIsNamed) {
 }
 
 TEST(KnownScale, NonsenseIsRefused) {
-  for (const char* by :
-       {"", "tag", "tag=", "tag=x", "tag=-1", "tag=0", "tag:=5", "tag:x=5", "tag=5furlong", "line=5",
-        "nodes:1=5", "nodes:1-1=5", "nodes:1-=5", "size:1=5", "hole=5", "=5", ":=", "tag=inf",
-        "circle:-1=5", "circle:1-2=5", "tag=5mm6"})
+  for (const char* by : {"",          "tag",         "tag=",       "tag=x",        "tag=-1",
+                         "tag=0",     "tag:=5",      "tag:x=5",    "tag=5furlong", "line=5",
+                         "nodes:1=5", "nodes:1-1=5", "nodes:1-=5", "size:1=5",     "hole=5",
+                         "=5",        ":=",          "tag=inf",    "circle:-1=5",  "circle:1-2=5",
+                         "tag=5mm6"})
     EXPECT_THROW(parse_scale_reference(by), UsageError) << by;
   CadOptions both;
   both.scale_by = "size=5";

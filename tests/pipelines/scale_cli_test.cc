@@ -18,19 +18,21 @@ using testing::HasSubstr;
 const char kScene[] =
     "synthesize box-hole --views 20 --resolution 320 --seed 3 --outputs none --quiet --out ";
 const char kPhotos[] =
-    "synthesize l-bracket --style photo --views 16 --resolution 480 --tag 5 --tag-size 0.3 --seed 2 "
+    "synthesize l-bracket --style photo --views 16 --resolution 480 --tag 5 --tag-size 0.3 --seed "
+    "2 "
     "--outputs none --quiet --out ";
 
 class Scale : public Program {
  protected:
   static void SetUpTestSuite() {
-    base_ = (fs::temp_directory_path() / ("sketchsplat_scale." + std::to_string(getpid()))).string();
+    base_ =
+        (fs::temp_directory_path() / ("sketchsplat_scale." + std::to_string(getpid()))).string();
     scene_ = base_ + "/scene", photos_ = base_ + "/photos", result_ = base_ + "/result";
     fs::create_directories(base_);
     Program::run_in(base_, kScene + scene_);
     Program::run_in(base_, kPhotos + photos_);
-    Program::run_in(base_, "reconstruct " + scene_ + " --preset fast --overlays 1 --out " + result_ +
-                               " --scale-by diameter=2cm");
+    Program::run_in(base_, "reconstruct " + scene_ + " --preset fast --overlays 1 --out " +
+                               result_ + " --scale-by diameter=2cm");
   }
   static void TearDownTestSuite() { fs::remove_all(base_); }
 
@@ -115,7 +117,8 @@ TEST_F(Scale, ATagInPhotographsTellsIt) {
   for (int k = 0; k < 3; ++k)
     side += std::pow(truth[0][k].get<double>() - truth[1][k].get<double>(), 2);
   side = std::sqrt(side);
-  const Outcome plan = run("reconstruct " + photos_ + " -o none --scale-by tag=10mm --dry-run --json");
+  const Outcome plan =
+      run("reconstruct " + photos_ + " -o none --scale-by tag=10mm --dry-run --json");
   ASSERT_EQ(plan.status, 0) << plan.err;
   const json scale = json::parse(plan.out)["scale"];
   EXPECT_NEAR(scale["units_per_world"].get<double>() * side / 10, 1, 1e-3);
@@ -129,7 +132,8 @@ TEST_F(Scale, ATagInPhotographsTellsIt) {
   EXPECT_THAT(o.out, HasSubstr("a world unit is"));
   EXPECT_EQ(json_in(in_folder("tag/report.json"))["scale"]["units_per_world"],
             scale["units_per_world"]);
-  EXPECT_EQ(run("reconstruct " + scene_ + " -o " + in_folder("no") + " --scale-by tag=10").status, 4)
+  EXPECT_EQ(run("reconstruct " + scene_ + " -o " + in_folder("no") + " --scale-by tag=10").status,
+            4)
       << "there is none";
 }
 
@@ -152,8 +156,9 @@ TEST_F(Scale, ATinyBudgetStopsRefiningAndNotReporting) {
   EXPECT_GT(report["counts"]["curves"], 5);
   EXPECT_EQ(run("export " + in_folder("early") + " -o " + in_folder("e.step")).status, 0)
       << "sound enough to be read";
-  const Outcome enough = run("reconstruct " + scene_ + " --preset fast --overlays 0 --budget 1000 " +
-                             "--reproducible -o " + in_folder("enough"));
+  const Outcome enough =
+      run("reconstruct " + scene_ + " --preset fast --overlays 0 --budget 1000 " +
+          "--reproducible -o " + in_folder("enough"));
   EXPECT_EQ(enough.err.find("budget"), std::string::npos);
   ASSERT_EQ(run("reconstruct " + scene_ + " --preset fast --overlays 0 --reproducible -o " +
                 in_folder("all")).status, 0);
