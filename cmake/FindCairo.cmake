@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Debian ships cairo without a CMake configuration.
 find_path(Cairo_INCLUDE_DIR cairo.h PATH_SUFFIXES cairo)
 find_library(Cairo_LIBRARY cairo)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # OpenCV's core and imgproc only: Debian ships OpenCVConfig.cmake solely with the 1 GB meta package.
 find_path(OpenCVLean_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCVLean_CORE opencv_core)

@@ -7,6 +7,27 @@ install(TARGETS sketchsplat RUNTIME DESTINATION bin COMPONENT program)
 install(TARGETS sketchsplat_charts sketchsplat_image_formats sketchsplat_synthesis
   LIBRARY DESTINATION lib/sketchsplat COMPONENT program)
 
+# The library for programs of others: find_package(sketchsplat), sketchsplat::sketchsplat.
+include(CMakePackageConfigHelpers)
+install(TARGETS sketchsplat_library EXPORT sketchsplat_targets
+  LIBRARY DESTINATION lib COMPONENT library)
+install(TARGETS sketchsplat_image_formats LIBRARY DESTINATION lib/sketchsplat COMPONENT library)
+install(DIRECTORY include/sketchsplat DESTINATION include COMPONENT library)
+install(EXPORT sketchsplat_targets FILE sketchsplatTargets.cmake NAMESPACE sketchsplat::
+  DESTINATION lib/cmake/sketchsplat COMPONENT library)
+configure_package_config_file(cmake/sketchsplatConfig.cmake.in
+  ${CMAKE_BINARY_DIR}/generated/sketchsplatConfig.cmake
+  INSTALL_DESTINATION lib/cmake/sketchsplat)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/generated/sketchsplatConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/generated/sketchsplatConfig.cmake
+  ${CMAKE_BINARY_DIR}/generated/sketchsplatConfigVersion.cmake
+  DESTINATION lib/cmake/sketchsplat COMPONENT library)
+if(TARGET sketchsplat_python)
+  install(TARGETS sketchsplat_python LIBRARY DESTINATION ${SKETCHSPLAT_PYTHON_FOLDER}
+    COMPONENT library)
+endif()
+
 # Pages and completions are what the program itself says.
 set(written ${CMAKE_BINARY_DIR}/generated/share)
 file(MAKE_DIRECTORY ${written})
@@ -29,8 +50,9 @@ install(FILES ${written}/sketchsplat DESTINATION share/bash-completion/completio
 install(FILES ${written}/_sketchsplat DESTINATION share/zsh/vendor-completions COMPONENT program)
 install(FILES ${written}/sketchsplat.fish DESTINATION share/fish/vendor_completions.d
   COMPONENT program)
-install(FILES README.md OPTIONS.md CHANGELOG.md docs/batch.md cmake/copyright
+install(FILES README.md LICENSE OPTIONS.md CHANGELOG.md cmake/copyright
   DESTINATION share/doc/sketchsplat COMPONENT program)
+install(DIRECTORY docs DESTINATION share/doc/sketchsplat COMPONENT program)
 install(PROGRAMS eval/abc_nef_table.py DESTINATION share/sketchsplat COMPONENT program)
 install(PROGRAMS scripts/slurm/array.sh scripts/slurm/merge.sh scripts/slurm/one_node.sh
   scripts/slurm/submit.sh DESTINATION share/sketchsplat/slurm COMPONENT program)

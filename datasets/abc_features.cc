@@ -10,7 +10,6 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "datasets/errors.h"
 #include "sketches/json_text.h"
@@ -28,9 +27,7 @@ struct RawCurve {
 std::string read_text(const std::string& path, const std::string& what) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path, what, "nothing that can be opened");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  return read_whole(&in, path, kMostFileBytes);
 }
 
 // The part of the file below the top-level key `curves`. The surfaces are 20 to 50 times as long

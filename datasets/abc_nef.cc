@@ -18,7 +18,8 @@ bool is_marked(const std::string& folder) {
   return std::filesystem::exists(scene_file(folder), none);
 }
 
-void read(const std::string& folder, Scene* scene) {
+void read(const SceneSource& source, Scene* scene) {
+  const std::string& folder = source.folder;
   const nlohmann::json json = load_json(scene_file(folder));
   const JsonValue root{&json, scene_file(folder), ""};
   if (root.has("worldtogt")) {
@@ -29,10 +30,10 @@ void read(const std::string& folder, Scene* scene) {
   if (root.has("width") && root.has("height")) {
     size = {root["width"].positive_integer(), root["height"].positive_integer()};
   }
-  for (const JsonValue& entry : root["frames"].elements()) {
+  for (const JsonValue& entry : frames_of(root)) {
     Frame frame;
     frame.name = entry["rgb_path"].text();
-    frame.image_path = find_image(folder + "/color", frame.name);
+    find_image_of(source, folder + "/color", frame.name, &frame);
     frame.size = size;
     frame.intrinsics = entry["intrinsics"].matrix(3, 3);
     frame.world_from_cam = entry["camtoworld"].matrix(4, 4);

@@ -105,8 +105,10 @@ void warn_of_images_without_pose(const std::string& images, bool deep, const Col
   warn_of("images without a pose", without, scene);
 }
 
-void read(const std::string& folder, Scene* scene) {
+void read(const SceneSource& source, Scene* scene) {
+  const std::string& folder = source.folder;
   const ColmapModel model = read_colmap_model(find_model(folder, scene));
+  check_frame_count(model.images_path, model.images.size());
   std::error_code none;
   const bool inside = fs::is_directory(folder + "/images", none);
   const std::string images = inside ? folder + "/images" : folder;
@@ -124,9 +126,12 @@ void read(const std::string& folder, Scene* scene) {
                            image.name + " (colmap image_undistorter turns the others into PINHOLE)",
                        camera->second.unknown);
     Frame frame = make_frame(image, camera->second);
-    frame.image_path = image_file(images, image.name);
-    frame.mask_path = find_mask(folder + "/masks", image.name);
-    if (frame.image_path.empty()) {
+    frame.is_outside = !may_reach(source, (fs::path(images) / image.name).string());
+    if (!frame.is_outside) {
+      frame.image_path = image_file(images, image.name);
+      frame.mask_path = find_mask(folder + "/masks", image.name);
+    }
+    if (frame.image_path.empty() && !frame.is_outside) {
       without_file.push_back(image.name);
     } else if (add_frame(frame, scene)) {
       view_of[image.id] = int(scene->views.size()) - 1;

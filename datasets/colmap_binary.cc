@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "datasets/colmap_files.h"
 #include "datasets/errors.h"
+#include "datasets/frame.h"
+#include "sketches/whole_file.h"
 
 namespace sketchsplat {
 namespace {
@@ -15,7 +18,11 @@ class BinaryFile {
  public:
   BinaryFile(const std::string& path, const std::string& what)
       : path_(path), what_(what), file_(path, std::ios::binary | std::ios::ate) {
-    if (!file_) throw InputError(path, what, "nothing to read");
+    if (!file_ || std::filesystem::is_directory(path))
+      throw InputError(path, what, "nothing to read");
+    file_.seekg(0);
+    check_length(&file_, path);
+    file_.seekg(0, std::ios::end);
     left_ = std::uint64_t(file_.tellg());
     file_.seekg(0);
   }
@@ -102,7 +109,9 @@ std::map<std::uint32_t, ColmapCamera> read_cameras_binary(const std::string& pat
 
 std::vector<ColmapImage> read_images_binary(const std::string& path) {
   BinaryFile file(path, kImages);
-  std::vector<ColmapImage> images(file.read_count(kLeastImage));
+  const std::uint64_t count = file.read_count(kLeastImage);
+  check_frame_count(path, count);
+  std::vector<ColmapImage> images(count);
   for (ColmapImage& image : images) {
     image.id = file.read<std::uint32_t>();
     const std::vector<double> q = file.read<double>(4);

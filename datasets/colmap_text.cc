@@ -4,6 +4,8 @@
 
 #include "datasets/colmap_files.h"
 #include "datasets/errors.h"
+#include "datasets/frame.h"
+#include "sketches/whole_file.h"
 
 namespace sketchsplat {
 namespace {
@@ -13,6 +15,7 @@ class TextFile {
  public:
   explicit TextFile(const std::string& path) : path_(path), file_(path) {
     if (!file_) throw InputError(path, "a text file of COLMAP", "nothing to read");
+    check_length(&file_, path);
   }
 
   /// The next line, whatever is on it; false at the end of the file.
@@ -124,6 +127,7 @@ std::vector<ColmapImage> read_images_text(const std::string& path) {
     image.name = file.read_rest();
     if (image.name.empty()) file.complain("the name of an image", "");
     images.push_back(image);
+    check_frame_count(path, images.size());
     file.next_line();  // points3D has the other end of each point
   }
   return images;

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "datasets/errors.h"
+#include "datasets/image_planes.h"
 
 namespace sketchsplat {
 namespace {
@@ -81,12 +82,17 @@ bool add_frame(const Frame& frame, Scene* scene) {
   Frame f = frame;
   std::string complaint;
   const std::string name = f.image_path.empty() ? "" : unique_name(f, *scene);
-  if (f.image_path.empty()) {
+  if (f.is_outside) {
+    complaint = "its image lies outside of the scene's folder (--allow-outside reads it)";
+  } else if (f.image_path.empty()) {
     complaint = "its image is missing";
   } else if (name.empty()) {
     complaint = "its image is that of another frame";
   } else if (!complete_size(&f)) {
     complaint = "its image cannot be read";
+  } else if (double(f.size.width) * f.size.height > double(kMostPixels)) {
+    complaint =
+        "its image has more than " + std::to_string(kMostPixels / 1000000) + " million pixels";
   } else {
     complaint = complaint_about_pose(f.world_from_cam);
     if (complaint.empty()) complaint = complaint_about_intrinsics(f.intrinsics);
@@ -109,6 +115,33 @@ bool add_frame(const Frame& frame, Scene* scene) {
   view.mask_path = f.mask_path;
   scene->views.push_back(view);
   return true;
+}
+
+void check_frame_count(const std::string& path, std::uint64_t count) {
+  if (count > kMostFrames)
+    throw InputError(path, "at most " + std::to_string(kMostFrames) + " frames",
+                     std::to_string(count));
+}
+
+std::vector<JsonValue> frames_of(const JsonValue& root) {
+  const JsonValue frames = root["frames"];
+  check_frame_count(root.path, frames.json->size());
+  return frames.elements();
+}
+
+bool may_reach(const SceneSource& source, const std::string& path) {
+  if (source.allow_outside) return true;
+  const auto normal = [](const std::string& p) {
+    return (fs::absolute(p) / "").lexically_normal();  // with a slash at its end
+  };
+  const fs::path inner = normal(path).lexically_relative(normal(source.folder));
+  return !inner.empty() && *inner.begin() != "..";
+}
+
+void find_image_of(const SceneSource& source, const std::string& folder, const std::string& name,
+                   Frame* frame) {
+  frame->is_outside = !may_reach(source, (fs::path(folder) / name).string());
+  if (!frame->is_outside) frame->image_path = find_image(folder, name);
 }
 
 std::string find_image(const std::string& folder, const std::string& name) {

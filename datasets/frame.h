@@ -2,9 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
+#include <vector>
 
-#include "datasets/scene.h"
+#include "datasets/format.h"
+#include "datasets/json_file.h"
 
 namespace sketchsplat {
 
@@ -12,6 +15,7 @@ namespace sketchsplat {
 struct Frame {
   std::string name;        ///< as the scene file calls the image, with folders
   std::string image_path;  ///< empty if no such file was found
+  bool is_outside = false;  ///< the image lies where the scene may not reach: not looked for
   ImageSize size;          ///< [px]; 0 x 0: ask the image
   Eigen::Matrix3d intrinsics = Eigen::Matrix3d::Identity();      ///< pixel centres are integers
   Eigen::Matrix4d world_from_cam = Eigen::Matrix4d::Identity();  ///< axes of Camera
@@ -25,6 +29,21 @@ bool complete_size(Frame* frame);
 /// Appends the view of a frame to the scene, or a warning that names the frame and says what is
 /// wrong with it. Returns whether there is a view.
 bool add_frame(const Frame& frame, Scene* scene);
+
+/// Frames of a scene beyond which nobody means it.
+constexpr size_t kMostFrames = 20000;
+/// Throws InputError if a file claims more than kMostFrames.
+void check_frame_count(const std::string& path, std::uint64_t count);
+/// Elements of the array `frames`. Throws InputError.
+std::vector<JsonValue> frames_of(const JsonValue& root);
+
+/// Whether a scene may reach for the file: it lies in the scene's folder by its name alone (links in
+/// the folder may lead anywhere), or the user allows what lies outside.
+bool may_reach(const SceneSource& source, const std::string& path);
+
+/// The image of the frame: folder/name, see find_image, unless that lies outside of the scene.
+void find_image_of(const SceneSource& source, const std::string& folder, const std::string& name,
+                   Frame* frame);
 
 /// First of folder/name, then folder/name with the usual extensions, that is a file; empty if none.
 std::string find_image(const std::string& folder, const std::string& name);

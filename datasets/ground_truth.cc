@@ -84,6 +84,21 @@ std::string lower(std::string text) {
   return text;
 }
 
+// What lies beyond has no distances that a double can hold.
+constexpr double kLargest = 1e100;
+
+// Samples are taken every so often whatever the size: where that is too many, somebody means
+// something else by the numbers.
+void check_sampled_length(const std::vector<Eigen::Matrix3Xd>& curves, const std::string& path) {
+  constexpr double kMost = 1e5;
+  double length = 0;
+  for (const Eigen::Matrix3Xd& curve : curves)
+    for (Eigen::Index k = 0; k + 1 < curve.cols(); ++k)
+      length += (curve.col(k + 1) - curve.col(k)).norm();
+  if (!(length <= kMost))
+    throw InputError(path, "sharp curves of at most 100000 units in all", std::to_string(length));
+}
+
 void set_samples(const std::vector<Eigen::Matrix3Xd>& raw, const Eigen::Vector3d& offset,
                  GroundTruth* truth) {
   truth->samples = concatenate(raw) * truth->raw_scale;
@@ -100,9 +115,13 @@ GroundTruth read_abc(const fs::path& features) {
   truth.path = features.string();
   truth.format = "abc";
   truth.raw_scale = model.scale;
-  std::vector<Eigen::Matrix3Xd> raw;
+  std::vector<Eigen::Matrix3Xd> sharp, raw;
+  for (const AbcModel::Curve& curve : model.curves)
+    if (curve.sharp) sharp.push_back(curve.polyline);
+  check_sampled_length(sharp, truth.path);
+  for (const Eigen::Matrix3Xd& curve : sharp)
+    raw.push_back(sample_segments(curve, kPublishedInterval));
   for (const AbcModel::Curve& curve : model.curves) {
-    if (curve.sharp) raw.push_back(sample_segments(curve.polyline, kPublishedInterval));
     const Eigen::Matrix3Xd world = (curve.polyline * model.scale).colwise() + model.offset;
     truth.curves.push_back({curve.type, world, curve.sharp, is_closed(world)});
   }
@@ -150,8 +169,11 @@ Eigen::Matrix3Xd points_of(const json& list, const std::string& path) {
     if (list[i].size() != 3) throw InputError(path, "points of 3 numbers", list[i].dump());
     for (int k = 0; k < 3; ++k) points(k, i) = list[i].at(k).get<double>();
   }
-  if (points.cols() < 2 || !points.allFinite()) {
+  if (points.cols() < 2) {
     throw InputError(path, "curves of two points and more", std::to_string(points.cols()));
+  }
+  if (!(points.cwiseAbs().maxCoeff() < kLargest)) {
+    throw InputError(path, "coordinates below 1e100", "another number");
   }
   return points;
 }
@@ -190,7 +212,10 @@ GroundTruth read_point_curves(const json& document, const std::string& path) {
       points.rightCols<1>() = points.col(0);
     }
     const bool sharp = item.value("sharp", true);
-    if (in_raw && sharp) raw.push_back(sample_segments(points, kPublishedInterval));
+    if (in_raw && sharp) {
+      check_sampled_length({points}, path);
+      raw.push_back(sample_segments(points, kPublishedInterval));
+    }
     if (in_raw) points = ((points * truth.raw_scale).colwise() + offset).eval();
     truth.curves.push_back({lower(item.value("type", "other")), points, sharp, closed, views});
   }

@@ -44,6 +44,18 @@ void divide_by_alpha(Planes* planes) {
   }
 }
 
+/// Whether so many pixels may be read: before memory is taken for what a few bytes only claim. No
+/// format packs more than some thousand bytes into one.
+bool is_believable(const OIIO::ImageSpec& spec, const char* path, std::string* found) {
+  const std::uint64_t bytes = OIIO::Filesystem::file_size(path);
+  const bool too_many = spec.width > 0 && spec.height > kMostPixels / spec.width;
+  const bool too_deep = spec.nchannels < 1 || spec.nchannels > 64;
+  if (!too_many && !too_deep && spec.image_bytes() / 20000 <= bytes) return true;
+  *found = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels of " +
+           std::to_string(spec.nchannels) + " numbers in " + std::to_string(bytes) + " bytes";
+  return false;
+}
+
 bool read_planes(const char* path, bool header_only, Planes* planes, std::string* found) {
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
@@ -62,6 +74,7 @@ bool read_planes(const char* path, bool header_only, Planes* planes, std::string
   planes->height = spec.height;
   planes->channels = int(channels.size());
   if (header_only) return true;
+  if (!is_believable(spec, path, found)) return false;
 
   input->threads(1);
   std::vector<float> interleaved(size_t(spec.width) * spec.height * spec.nchannels);
@@ -98,7 +111,7 @@ bool write_exr(const char* path, const FloatPlanes& planes, bool half, std::stri
   OIIO::ImageSpec spec(planes.width, planes.height, int(channels),
                        half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
   spec.channelnames = planes.names;
-  spec.attribute("compression", "zip:2");  // fast rather than small
+  spec.attribute("compression", "zip:2");             // fast rather than small
   spec.attribute("DateTime", "1970:01:01 00:00:00");  // same values, same bytes
   output->threads(1);
   std::vector<float> interleaved(pixels * channels);
@@ -119,6 +132,7 @@ bool read_exr(const char* path, FloatPlanes* planes, std::string* found) {
   }
   input->threads(1);
   const OIIO::ImageSpec spec = input->spec();
+  if (!is_believable(spec, path, found)) return false;
   const size_t channels = size_t(spec.nchannels), pixels = size_t(spec.width) * spec.height;
   std::vector<float> interleaved(pixels * channels);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data())) {

@@ -21,6 +21,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr char kExpected[] = "an image";
+constexpr std::int64_t kMostImageBytes = 4 * kMostPixels;  // of files; hardly any is that large
 
 struct CloseFile {
   void operator()(FILE* file) const { std::fclose(file); }
@@ -38,6 +39,10 @@ File open_image(const std::string& path, size_t* size) {
   if (S_ISDIR(status.st_mode)) throw InputError(path, kExpected, "a directory");
   if (!S_ISREG(status.st_mode)) throw InputError(path, kExpected, "no regular file");
   if (status.st_size == 0) throw InputError(path, kExpected, "an empty file");
+  if (status.st_size > kMostImageBytes)
+    throw InputError(path,
+                     "an image of at most " + std::to_string(kMostImageBytes / 1000000) + " MB",
+                     std::to_string(status.st_size / 1000000) + " MB");
   *size = size_t(status.st_size);
   return file;
 }

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace sketchsplat {
+
+/// Pixels of an image beyond which nobody means it: twice those of the largest cameras. What claims
+/// more is refused before memory is taken.
+constexpr std::int64_t kMostPixels = 300'000'000;
 
 /// A decoded image file, one plane per channel: grey, grey + alpha, RGB or RGBA by their number.
 struct Planes {

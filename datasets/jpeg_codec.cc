@@ -6,6 +6,8 @@
 #include <jerror.h>
 
 #include <csetjmp>
+#include <cstdint>
+#include <cstdlib>
 #include <new>
 #include <vector>
 
@@ -68,6 +70,10 @@ bool decode(JpegState* state, size_t file_size, int denominator, Planes* planes)
     std::snprintf(state->message, sizeof state->message, "more pixels than the file can hold");
     return false;
   }
+  if (std::int64_t(jpeg.image_width) * jpeg.image_height > kMostPixels) {
+    std::snprintf(state->message, sizeof state->message, "too many pixels");
+    return false;
+  }
   jpeg.out_color_space = jpeg.jpeg_color_space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
   jpeg.scale_num = 1;
   jpeg.scale_denom = denominator;
@@ -105,6 +111,67 @@ bool decode_jpeg(const std::string& bytes, int denominator, Planes* planes, std:
     *found = "too large for the memory";
   }
   return false;
+}
+
+namespace {
+
+/// As JpegState, the other way round. `bytes` is libjpeg's, by malloc.
+struct JpegWriter {
+  jpeg_compress_struct jpeg;
+  jpeg_error_mgr errors;
+  std::jmp_buf escape;
+  char message[JMSG_LENGTH_MAX] = "";
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+
+  JpegWriter() {
+    jpeg.err = jpeg_std_error(&errors);
+    errors.error_exit = [](j_common_ptr failed) {
+      JpegWriter* writer = static_cast<JpegWriter*>(failed->client_data);
+      writer->errors.format_message(failed, writer->message);
+      std::longjmp(writer->escape, 1);
+    };
+    jpeg.client_data = this;
+    jpeg_create_compress(&jpeg);
+  }
+  ~JpegWriter() {
+    jpeg_destroy_compress(&jpeg);
+    std::free(bytes);
+  }
+  JpegWriter(const JpegWriter&) = delete;
+};
+
+bool encode(const unsigned char* rows, int width, int height, int quality, JpegWriter* writer) {
+  jpeg_compress_struct& jpeg = writer->jpeg;
+  if (setjmp(writer->escape)) return false;
+  jpeg_mem_dest(&jpeg, &writer->bytes, &writer->size);
+  jpeg.image_width = JDIMENSION(width);
+  jpeg.image_height = JDIMENSION(height);
+  jpeg.input_components = 3;
+  jpeg.in_color_space = JCS_RGB;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_quality(&jpeg, quality, TRUE);
+  jpeg.optimize_coding = TRUE;
+  jpeg_start_compress(&jpeg, TRUE);
+  while (jpeg.next_scanline < jpeg.image_height) {
+    JSAMPROW row = const_cast<JSAMPLE*>(rows) + size_t(jpeg.next_scanline) * width * 3;
+    jpeg_write_scanlines(&jpeg, &row, 1);
+  }
+  jpeg_finish_compress(&jpeg);
+  return true;
+}
+
+}  // namespace
+
+bool encode_jpeg(const unsigned char* rows, int width, int height, int quality, std::string* bytes,
+                 std::string* found) {
+  JpegWriter writer;
+  if (!encode(rows, width, height, quality, &writer)) {
+    *found = writer.message;
+    return false;
+  }
+  bytes->assign(reinterpret_cast<const char*>(writer.bytes), writer.size);
+  return true;
 }
 
 bool jpeg_size(FILE* file, int* width, int* height) {

@@ -16,6 +16,11 @@ namespace sketchsplat {
 /// does not know.
 bool decode_jpeg(const std::string& bytes, int denominator, Planes* planes, std::string* found);
 
+/// Baseline JPEG of 8-bit rows of three interleaved channels; quality in [1, 100]. Returns false
+/// and says in `found` what is wrong.
+bool encode_jpeg(const unsigned char* rows, int width, int height, int quality, std::string* bytes,
+                 std::string* found);
+
 /// Reads width and height [px] from the header alone. Returns false if there is none.
 bool jpeg_size(FILE* file, int* width, int* height);
 

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <vector>
 
 #include "datasets/errors.h"
@@ -101,15 +100,17 @@ void JsonValue::complain(const std::string& expected) const {
 
 json load_json(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(path, "a JSON file", "nothing to read");
+  if (!file || file.peek() == std::ifstream::traits_type::eof())
+    throw InputError(path, "a JSON file", "nothing to read");
+  const std::string text = read_whole(&file, path, kMostJsonBytes);
   try {
-    return parse_json_text<json>(text.str(), path);
-  } catch (const json::parse_error&) {
-    // perhaps because of a NaN
-  }
-  try {
-    return json::parse(without_nan(text.str()));
+    try {
+      return parse_json_text<json>(text, path);
+    } catch (const json::parse_error&) {
+      return json::parse(without_nan(text));  // perhaps because of a NaN
+    }
+  } catch (const json::out_of_range&) {
+    throw InputError(path, "numbers below 1.8e308", "a larger one");
   } catch (const json::parse_error& e) {
     throw InputError(path, "a JSON file", "no JSON at byte " + std::to_string(e.byte));
   }

@@ -23,14 +23,16 @@ bool is_marked(const std::string& folder) {
 
 /// NEF names ./train/<k>_colors, where PiDiNet's edge maps are, and keeps the pictures in
 /// train_img/.
-std::string picture_of(const std::string& folder, const std::string& file_path) {
-  const fs::path named = fs::path(file_path).lexically_normal();
-  const fs::path pictures = fs::path(folder) / (named.parent_path().string() + "_img");
+void find_picture_of(const SceneSource& source, Frame* frame) {
+  const fs::path named = fs::path(frame->name).lexically_normal();
+  const fs::path pictures = fs::path(source.folder) / (named.parent_path().string() + "_img");
   std::error_code none;
-  if (!named.parent_path().empty() && fs::is_directory(pictures, none)) {
-    return find_image(pictures.string(), named.filename().string());
+  if (!named.parent_path().empty() && may_reach(source, pictures.string()) &&
+      fs::is_directory(pictures, none)) {
+    find_image_of(source, pictures.string(), named.filename().string(), frame);
+  } else {
+    find_image_of(source, source.folder, named.string(), frame);
   }
-  return find_image(folder, named.string());
 }
 
 Eigen::Matrix3d intrinsics_from_angle(double angle_x_rad, const ImageSize& size) {
@@ -50,13 +52,14 @@ Eigen::Matrix3d intrinsics_of(const JsonValue& root, const JsonValue& entry,
   return intrinsics_from_angle(owner["camera_angle_x"].number(), size);
 }
 
-void read(const std::string& folder, Scene* scene) {
+void read(const SceneSource& source, Scene* scene) {
+  const std::string& folder = source.folder;
   const nlohmann::json json = load_json(scene_file(folder));
   const JsonValue root{&json, scene_file(folder), ""};
-  for (const JsonValue& entry : root["frames"].elements()) {
+  for (const JsonValue& entry : frames_of(root)) {
     Frame frame;
     frame.name = entry["file_path"].text();
-    frame.image_path = picture_of(folder, frame.name);
+    find_picture_of(source, &frame);
     frame.world_from_cam = entry["transform_matrix"].matrix(4, 4);
     frame.world_from_cam.middleCols<2>(1) *= -1;  // OpenGL: y up, z backward
     if (!frame.image_path.empty()) complete_size(&frame);

@@ -105,15 +105,16 @@ void warn_of_images_without_pose(const std::string& folder, const std::vector<st
   warn_of("images without a pose", without, scene);
 }
 
-void read(const std::string& folder, Scene* scene) {
+void read(const SceneSource& source, Scene* scene) {
+  const std::string& folder = source.folder;
   const nlohmann::json json = load_json(scene_file(folder));
   const JsonValue root{&json, scene_file(folder), ""};
   std::vector<std::string> used, without_file, without_mask;
-  for (const JsonValue& entry : root["frames"].elements()) {
+  for (const JsonValue& entry : frames_of(root)) {
     const Values values{root, entry};
     Frame frame;
     frame.name = entry["file_path"].text();
-    frame.image_path = find_image(folder, frame.name);
+    find_image_of(source, folder, frame.name, &frame);
     frame.world_from_cam = entry["transform_matrix"].matrix(4, 4);
     frame.world_from_cam.middleCols<2>(1) *= -1;  // OpenGL: y up, z backward
     frame.size = size_of(values);
@@ -122,19 +123,19 @@ void read(const std::string& folder, Scene* scene) {
     frame.lens = lens_of(values);
     if (entry.has("mask_path")) {
       const std::string mask = entry["mask_path"].text();
-      frame.mask_path = find_image(folder, mask);
+      if (may_reach(source, (fs::path(folder) / mask).string()))
+        frame.mask_path = find_image(folder, mask);
       if (frame.mask_path.empty()) without_mask.push_back(mask);
     }
-    if (frame.image_path.empty()) {
+    if (frame.image_path.empty() && !frame.is_outside) {
       without_file.push_back(frame.name);
       continue;
     }
-    used.push_back(frame.image_path);
-    add_frame(frame, scene);
+    if (add_frame(frame, scene) || !frame.is_outside) used.push_back(frame.image_path);
   }
   warn_of("poses without an image", without_file, scene);
   warn_of_images_without_pose((fs::path(folder) / "").lexically_normal().string(), used, scene);
-  warn_of("masks that are missing", without_mask, scene);
+  warn_of("masks that are missing or outside of the scene", without_mask, scene);
 }
 
 }  // namespace

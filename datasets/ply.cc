@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/ply.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "datasets/errors.h"
+#include "sketches/whole_file.h"
 
 namespace sketchsplat {
 namespace {
@@ -87,6 +90,12 @@ bool is_stroke(const std::string& name) {
          name.find("index") != std::string::npos;
 }
 
+// Nearest that an int can hold; 0 for what is no number.
+int whole_number(double value) {
+  constexpr double kMost = std::numeric_limits<int>::max();
+  return std::isnan(value) ? 0 : int(std::clamp(value, -kMost, kMost));
+}
+
 // Values of one vertex in the order of the properties.
 bool read_vertex(std::istream& in, const Header& header, std::vector<char>* bytes,
                  std::vector<double>* values) {
@@ -107,6 +116,7 @@ bool read_vertex(std::istream& in, const Header& header, std::vector<char>* byte
 PlyPoints read_ply_points(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path, "a PLY file", "nothing that can be opened");
+  check_length(&in, path);
   const Header header = read_header(in, path);
   int xyz[3] = {-1, -1, -1}, stroke = -1;
   int stride = 0;
@@ -135,7 +145,7 @@ PlyPoints read_ply_points(const std::string& path) {
       }
       coordinates.push_back(values[k]);
     }
-    if (stroke >= 0) points.stroke.push_back(int(values[stroke]));
+    if (stroke >= 0) points.stroke.push_back(whole_number(values[stroke]));
   }
   points.position = Eigen::Map<Eigen::Matrix3Xd>(coordinates.data(), 3, header.count);
   return points;

@@ -3,6 +3,7 @@
 
 #include <png.h>
 
+#include <cstdint>
 #include <cstring>
 #include <new>
 #include <vector>
@@ -79,6 +80,7 @@ void append_row(const png_byte* row, Planes* planes) {
 bool allocate(size_t stored_bytes, size_t file_size, size_t stride, bool interlaced,
               PngState* state, Planes* planes) {
   if (stored_bytes / 1100 > file_size) return false;
+  if (std::int64_t(planes->width) * planes->height > kMostPixels) return false;
   for (int c = 0; c < planes->channels; ++c) {
     planes->plane[c].reserve(size_t(planes->width) * planes->height);
   }
@@ -104,7 +106,8 @@ bool decode(FILE* file, size_t file_size, PngState* state, Planes* planes) {
   const bool deep = png_get_bit_depth(png, info) == 16;
   const size_t stride = png_get_rowbytes(png, info);
   if (!allocate(stored_bytes, file_size, stride, passes > 1, state, planes)) {
-    std::snprintf(state->message, sizeof state->message, "more pixels than the file can hold");
+    std::snprintf(state->message, sizeof state->message,
+                  "more pixels than the file can hold, or too many");
     return false;
   }
   for (int pass = 0; pass < passes; ++pass) {

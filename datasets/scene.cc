@@ -8,6 +8,7 @@
 #include "datasets/errors.h"
 #include "datasets/far_views.h"
 #include "datasets/format.h"
+#include "datasets/open_options.h"
 
 namespace sketchsplat {
 namespace {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// In the order in which open_scene looks for their markers.
 constexpr const SceneFormat* kFormats[] = {&kAbcNefFormat, &kNerfFormat, &kNerfstudioFormat,
-                                            &kColmapFormat};
+                                           &kColmapFormat};
 
 const SceneFormat& find_format(const std::string& folder, const std::string& name) {
   std::string known, markers;
@@ -61,15 +62,19 @@ std::vector<fs::path> map_folders(const Scene& scene, const View& view,
 }  // namespace
 
 Scene open_scene(const std::string& folder, const std::string& format) {
+  return open_scene(folder, OpenOptions{format});
+}
+
+Scene open_scene(const std::string& folder, const OpenOptions& options) {
   std::error_code none;
   if (!fs::is_directory(folder, none)) {
     throw InputError(folder, "a scene folder", fs::exists(folder, none) ? "a file" : "nothing");
   }
-  const SceneFormat& reader = find_format(folder, format);
+  const SceneFormat& reader = find_format(folder, options.format);
   Scene scene;
   scene.folder = folder;
   scene.format = reader.name;
-  reader.read(folder, &scene);
+  reader.read({folder, options.allow_outside}, &scene);
   leave_out_far_views(&scene);
   if (scene.views.empty()) {
     throw InputError(folder, "a scene with frames that can be used",

@@ -39,8 +39,8 @@ bool is_scene_folder(const std::string& folder, const std::string& format = "");
 /// Names that open_scene accepts as `format`, in the order in which it looks for them.
 std::vector<std::string> scene_formats();
 
-/// Masks from another folder for the views of a scene, before alpha and the scene's own: the mask of
-/// DIR/images/sub/a.jpg is the first of sub/a.jpg, sub/a.jpg.png, sub/a.png in `folder`, longer
+/// Masks from another folder for the views of a scene, before alpha and the scene's own: the mask
+/// of DIR/images/sub/a.jpg is the first of sub/a.jpg, sub/a.jpg.png, sub/a.png in `folder`, longer
 /// paths first. Views without one keep what they have; a warning counts them. Throws InputError if
 /// no view has one.
 void use_masks(const std::string& folder, Scene* scene);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "datasets/camera.h"
+#include "datasets/image.h"
 #include "datasets/lens.h"
 #include "datasets/pose.h"
 
@@ -18,9 +20,11 @@ struct View {
   std::string image_path;  ///< where to read it
   std::string mask_path;   ///< file that is white where the object is; empty if there is none
   bool mask_over_alpha = false;  ///< the mask counts even if the image has an alpha channel
-  Camera camera;           ///< width and height are filled from the image if the scene file is silent
+  Camera camera;  ///< width and height are filled from the image if the scene file is silent
   Pose cam_from_world;
   Lens lens;
+  /// The image, from any thread, if it is no file; `image_path` is a name then.
+  std::function<Picture()> make_picture;
 
   Eigen::Vector3d center_in_world() const {
     return -(cam_from_world.rotation.transpose() * cam_from_world.translation);

@@ -6,6 +6,7 @@
 #include "datasets/errors.h"
 #include "datasets/frame.h"
 #include "datasets/scene.h"
+#include "datasets/shrink_planes.h"
 
 namespace sketchsplat {
 namespace {
@@ -27,6 +28,21 @@ Image<float> read_mask(const View& view, int denominator) {
   if (*std::max_element(mask.data.begin(), mask.data.end()) < 0.5f)
     throw InputError(view.mask_path, "a mask that is white where the object is", "nothing white");
   return mask;
+}
+
+Picture shrunk(Picture picture, int denominator) {
+  if (denominator == 1) return picture;
+  Image<float>* const images[] = {&picture.red, &picture.green, &picture.blue, &picture.alpha};
+  Planes planes;
+  planes.width = picture.width(), planes.height = picture.height();
+  planes.channels = picture.alpha.empty() ? 3 : 4;
+  for (int c = 0; c < planes.channels; ++c) planes.plane[c] = std::move(images[c]->data);
+  shrink_planes(denominator, &planes);
+  for (int c = 0; c < planes.channels; ++c) {
+    images[c]->width = planes.width, images[c]->height = planes.height;
+    images[c]->data = std::move(planes.plane[c]);
+  }
+  return picture;
 }
 
 /// Mask of an image by the longest end of its path that names one.
@@ -63,7 +79,8 @@ void use_masks(const std::string& folder, Scene* scene) {
 }
 
 Picture read_picture(const View& view, int denominator) {
-  Picture picture = read_picture(view.image_path, denominator);
+  Picture picture = view.make_picture ? shrunk(view.make_picture(), denominator)
+                                      : read_picture(view.image_path, denominator);
   check_size(view.image_path, "an image", picture.width(), picture.height(),
              view.camera.shrunk(denominator));
   const std::vector<float>& alpha = picture.alpha.data;  // says nothing if all is opaque

@@ -174,8 +174,8 @@ std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep
 
 namespace {
 
-// Chessboard distance to the nearest pixel with an edgel, negative, where there is none: forward and
-// backward (Rosenfeld, Pfaltz: Sequential operations in digital picture processing, JACM 1966).
+// Chessboard distance to the nearest pixel with an edgel, negative, where there is none: forward
+// and backward (Rosenfeld, Pfaltz: Sequential operations in digital picture processing, JACM 1966).
 void fill_distances(EdgelMap* map) {
   const int w = map->window_width, h = map->window_height;
   const auto far = [&](int x, int y) {  // minus the distance; 0 at an edgel

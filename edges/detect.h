@@ -40,8 +40,8 @@ struct EdgelMap {
   int num_chains() const { return chain.empty() ? 0 : int(chain.size()) - 1; }
   /// Nearest edgel to a pixel position, or -1 if none lies within the reach.
   int nearest_at(double x, double y) const { return std::max(-1, nearest_or_far(x, y)); }
-  /// The same; if none, minus a number of pixels (chessboard) nearer than which there is none at any
-  /// pixel either.
+  /// The same; if none, minus a number of pixels (chessboard) nearer than which there is none at
+  /// any pixel either.
   int nearest_or_far(double x, double y) const {
     if (!(x > -1e6 && x < 1e6 && y > -1e6 && y < 1e6)) return -1;
     const int u = int(x + 1000000.5) - 1000000 - x0, v = int(y + 1000000.5) - 1000000 - y0;

@@ -115,8 +115,8 @@ bool Sweeper::make_ray(int view, const Edgel& e, Ray* ray) const {
   return true;
 }
 
-// The first k after this one at which a + k b (homogeneous) lies more than `reach` pixels (chessboard)
-// from (u, v), where it is now.
+// The first k after this one at which a + k b (homogeneous) lies more than `reach` pixels
+// (chessboard) from (u, v), where it is now.
 int step_over(const Eigen::Vector3f& a, const Eigen::Vector3f& b, int k, float u, float v,
               float reach) {
   if (reach < 1) return k + 1;

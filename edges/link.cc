@@ -1,50 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "edges/link.h"
 
-#include <CGAL/Fuzzy_sphere.h>
-#include <CGAL/Kd_tree.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/property_map.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "datasets/kd_tree.h"
+
 namespace sketchsplat {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Indexed = std::pair<Kernel::Point_3, int>;
-using Traits = CGAL::Search_traits_adapter<Indexed, CGAL::First_of_pair_property_map<Indexed>,
-                                           CGAL::Search_traits_3<Kernel>>;
-
-// Indices of points within a radius, ascending.
-class Neighbours {
- public:
-  explicit Neighbours(const std::vector<EdgePoint>& points) {
-    std::vector<Indexed> items;
-    for (size_t i = 0; i < points.size(); ++i) items.push_back({at(points[i].position), int(i)});
-    tree_.insert(items.begin(), items.end());
-    if (!items.empty()) tree_.build();
-  }
-  std::vector<int> within(const Eigen::Vector3d& p, double radius) const {
-    std::vector<Indexed> found;
-    tree_.search(std::back_inserter(found), CGAL::Fuzzy_sphere<Traits>(at(p), radius));
-    std::vector<int> out;
-    for (const Indexed& f : found) out.push_back(f.second);
-    std::sort(out.begin(), out.end());
-    return out;
-  }
-
- private:
-  static Kernel::Point_3 at(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
-  CGAL::Kd_tree<Traits> tree_;
-};
+KdTree tree_of(const std::vector<EdgePoint>& points) {
+  Eigen::Matrix3Xd positions(3, points.size());
+  for (size_t i = 0; i < points.size(); ++i) positions.col(i) = points[i].position;
+  return KdTree(positions);
+}
 
 // The neighbour that continues point i along side * tangent, or -1.
-int successor(const std::vector<EdgePoint>& points, const Neighbours& neighbours, int i, int side,
+int successor(const std::vector<EdgePoint>& points, const KdTree& neighbours, int i, int side,
               double footprint, const LinkOptions& options) {
   const EdgePoint& p = points[i];
   const Eigen::Vector3d t = p.tangent * side;
@@ -82,7 +55,7 @@ std::vector<EdgePoint> thin_points(const std::vector<EdgePoint>& points, double 
     if (points[a].views != points[b].views) return points[a].views > points[b].views;
     return points[a].rms_px < points[b].rms_px;
   });
-  const Neighbours neighbours(points);
+  const KdTree neighbours = tree_of(points);
   std::vector<bool> gone(points.size());
   std::vector<EdgePoint> out;
   for (int i : order) {
@@ -102,7 +75,7 @@ std::vector<EdgePoint> thin_points(const std::vector<EdgePoint>& points, double 
 std::vector<PointChain> link_points(const std::vector<EdgePoint>& points, double footprint,
                                     const LinkOptions& options) {
   const int n = int(points.size());
-  const Neighbours neighbours(points);
+  const KdTree neighbours = tree_of(points);
   std::vector<int> link[2];  // along +tangent, along -tangent
   for (int side = 0; side < 2; ++side) {
     link[side].resize(n);

@@ -44,8 +44,8 @@ class Neighbourhood {
     const int i = std::clamp(int(x / kCell), 0, nx_ - 1);
     return std::clamp(int(y / kCell), 0, ny_ - 1) * nx_ + i;
   }
-  // Share of the pixels around a cell that are at least so strong, without those of the chain itself.
-  // `own`: edgels of the chain per cell.
+  // Share of the pixels around a cell that are at least so strong, without those of the chain
+  // itself. `own`: edgels of the chain per cell.
   double share(int cell, float strength, const std::map<int, int>& own) const {
     const int b = bin(strength);
     double all = 0, strong = 0, mine = 0;
@@ -123,8 +123,8 @@ double meaning_of(const std::vector<Place>& places, size_t begin, size_t end, do
   return (nats - std::log(tests)) / std::log(10.0);
 }
 
-// The pieces of a chain: what evidence against lies between, or at its ends, may be worth kDrop (as in
-// Altschul et al.: Basic local alignment search tool, J. Mol. Biol. 1990).
+// The pieces of a chain: what evidence against lies between, or at its ends, may be worth kDrop (as
+// in Altschul et al.: Basic local alignment search tool, J. Mol. Biol. 1990).
 void cut(const std::vector<Place>& places, int last_edgel, double tests, double least,
          std::vector<Piece>* out) {
   const size_t n = places.size();

@@ -21,7 +21,8 @@ struct Model {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-// At most so many samples of the curve, evenly, with a frame that turns no more than the curve does.
+// At most so many samples of the curve, evenly, with a frame that turns no more than the curve
+// does.
 struct Frames {
   std::vector<Vector3d> point, tangent, e1, e2;
   Frames(const CurvePoints& curve, int most) {
@@ -56,8 +57,8 @@ struct Sighting {
 };
 using Sightings = std::vector<std::optional<Sighting>>;  // per view
 
-// A round surface has two rims, one on either side of its axis. Which one a view shows, the brighter
-// side of the edge tells if what lies behind is alike everywhere; else any does.
+// A round surface has two rims, one on either side of its axis. Which one a view shows, the
+// brighter side of the edge tells if what lies behind is alike everywhere; else any does.
 enum class Sides { kByBrightness, kAny, kFirst };
 
 // A sample of the curve in a view, taken for the rim on one side (1 or -1).
@@ -132,7 +133,8 @@ bool solve(const Sightings& sightings, bool fixed, Model* model) {
   return model->value.allFinite();
 }
 
-// Logarithm of how much likelier the sightings are by the model than by accident, anywhere in reach.
+// Logarithm of how much likelier the sightings are by the model than by accident, anywhere in
+// reach.
 double nats_of(const Sightings& sightings, const Model& model, const RimOptions& options) {
   constexpr double kAccident = 0.5;  // of the views that show another edge
   const double peak = 2 * options.reach_px / (options.sigma_px * std::sqrt(2 * M_PI));
@@ -243,8 +245,8 @@ bool Rim::is_round(double footprint) const {
   constexpr int kMoreViews = 3;       // so many
   constexpr double kSure = 6;         // standard deviations
   constexpr double kLeastRadius = 1;  // [px]
-  return nats > kPrice && views >= kMore * fixed_views + kMoreViews && std::abs(radius) > kSure * sigma &&
-         std::abs(radius) > kLeastRadius * footprint;
+  return nats > kPrice && views >= kMore * fixed_views + kMoreViews &&
+         std::abs(radius) > kSure * sigma && std::abs(radius) > kLeastRadius * footprint;
 }
 
 void explain_rim(const EdgeWorld& world, const CurvePoints& curve, const Rim& rim,

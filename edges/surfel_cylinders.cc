@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "edges/surfel_cylinders.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Random.h>
-#include <CGAL/Shape_detection/Efficient_RANSAC.h>
-#include <CGAL/property_map.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <cstdint>
+#include <queue>
+#include <random>
 #include <utility>
+
+#include "datasets/kd_tree.h"
 
 namespace sketchsplat {
 namespace {
@@ -21,8 +20,13 @@ using Eigen::Vector3d;
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kGap = 2;              // [spacings] between surfels of one cylinder
-constexpr double kMissed = 0.001;       // probability that RANSAC misses the largest cylinder
 constexpr int kRounds = 8, kSteps = 3;  // of choosing and fitting; of a fit
+constexpr int kPairs = 2;               // that each surfel proposes a cylinder with
+constexpr int kMostPairs = 10000;       // of all surfels
+constexpr int kLongestWalk = 6;         // log2 of the steps from a surfel to the other of its pair
+constexpr int kWalks = 4;               // until the other one's normal differs enough
+constexpr double kLeastTurnDeg = 12;    // [deg] between the normals of a pair
+constexpr double kLeastArc = 0.5;       // of the arc asked for, before a cylinder is fitted
 // A radian of a normal weighs as so many spacings of a place: fits are wrong by a fifth of a
 // spacing and by 0.1 rad, about.
 constexpr double kTilt = 2;
@@ -36,55 +40,174 @@ struct Cylinder {
   Vector3d from_axis(const Vector3d& p) const { return p - point - height(p) * axis; }
 };
 
+// Cylinders that pairs of neighbouring surfels propose, by how many surfels lie on them.
+class CylinderPool {
+ public:
+  // `from`: indices into `set` of the surfels that count.
+  CylinderPool(const SurfelSet& set, std::vector<int> from, double spacing,
+               const CylinderOptions& options)
+      : from_(std::move(from)),
+        reach_(options.reach * spacing),
+        cosine_(std::cos(options.angle_deg * kDegree)),
+        points_(from_.size(), 3),
+        normals_(from_.size(), 3),
+        free_(from_.size(), 1),
+        near_(from_.size()) {
+    for (size_t k = 0; k < from_.size(); ++k) {
+      points_.row(k) = set.center(from_[k]).transpose();
+      normals_.row(k) = set.normal(from_[k]).transpose();
+    }
+    find_neighbours(kGap * spacing);
+    propose();
+  }
+
+  // The cylinder with the largest connected set of free surfels, and that set, ascending; false if
+  // there is none of at least `fewest`. No cylinder comes twice.
+  bool next(int fewest, Cylinder* c, std::vector<int>* on) {
+    while (!queue_.empty()) {
+      const auto [most, k] = queue_.top();  // as many as it had; it can only have lost some
+      if (most < fewest) return false;
+      queue_.pop();
+      std::vector<int> part = largest_part(proposed_[k]);
+      if (!queue_.empty() && int(part.size()) < queue_.top().first) {
+        queue_.push({int(part.size()), k});
+        continue;
+      }
+      if (int(part.size()) < fewest) return false;
+      *c = proposed_[k];
+      on->clear();
+      for (const int i : part) on->push_back(from_[i]);
+      return true;
+    }
+    return false;
+  }
+
+  // Surfels that count no more; `gone` as from next() or SurfelSet.
+  void remove(const std::vector<int>& gone) {
+    for (const int i : gone) {
+      const auto at = std::lower_bound(from_.begin(), from_.end(), i);
+      if (at != from_.end() && *at == i) free_[at - from_.begin()] = 0;
+    }
+  }
+
+ private:
+  void find_neighbours(double radius) {
+    const KdTree tree(points_.transpose());
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < int(from_.size()); ++i) near_[i] = tree.within(points_.row(i), radius);
+  }
+
+  void propose() {
+    const int n = int(from_.size()), pairs = std::min(kPairs * n, kMostPairs);
+    std::mt19937 random(1);
+    for (int k = 0; k < pairs; ++k) {
+      const int i = int(int64_t(k) * n / pairs);
+      for (int walk = 0; walk < kWalks; ++walk) {
+        int j = i;
+        for (int left = 1 << (1 + random() % kLongestWalk); left > 0 && !near_[j].empty(); --left)
+          j = near_[j][random() % near_[j].size()];
+        Cylinder c;
+        if (!through(i, j, &c)) continue;
+        proposed_.push_back(c);
+        break;
+      }
+    }
+    std::vector<int> count(proposed_.size());
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < int(proposed_.size()); ++k) count[k] = count_on(proposed_[k]);
+    for (size_t k = 0; k < proposed_.size(); ++k) queue_.push({count[k], int(k)});
+  }
+
+  // The cylinder of two surfels: its axis is across both normals and where these meet.
+  bool through(int i, int j, Cylinder* c) const {
+    const Vector3d p = points_.row(i), q = points_.row(j), n = normals_.row(i), m = normals_.row(j);
+    const Vector3d across = n.cross(m);
+    if (across.norm() < std::sin(kLeastTurnDeg * kDegree)) return false;
+    c->axis = across.normalized();
+    const Vector3d apart = q - p - c->axis.dot(q - p) * c->axis, turn = n - m;
+    const double along = apart.dot(turn) / turn.squaredNorm();
+    if ((apart - along * turn).norm() > 2 * reach_) return false;
+    c->point = p + along * n;
+    c->radius = std::abs(along), c->side = along < 0 ? 1 : -1;
+    return c->radius > 0;
+  }
+
+  template <typename F>
+  void each_on(const Cylinder& c, const F& f) const {
+    const double low = std::max(0.0, c.radius - reach_), high = c.radius + reach_;
+    for (int i = 0; i < int(from_.size()); ++i) {
+      const double x = points_(i, 0) - c.point[0], y = points_(i, 1) - c.point[1],
+                   z = points_(i, 2) - c.point[2];
+      const double u = normals_(i, 0), v = normals_(i, 1), w = normals_(i, 2);
+      const double height = x * c.axis[0] + y * c.axis[1] + z * c.axis[2];
+      const double tilt = u * c.axis[0] + v * c.axis[1] + w * c.axis[2];
+      const double square = x * x + y * y + z * z - height * height;
+      const double facing = c.side * (x * u + y * v + z * w - height * tilt);
+      f(i, bool(int(square > low * low) & int(square < high * high) & int(facing > 0) &
+                int(facing * facing > cosine_ * cosine_ * square)));
+    }
+  }
+
+  int count_on(const Cylinder& c) const {
+    int count = 0;
+    each_on(c, [&](int, bool on) { count += on; });
+    return count;
+  }
+
+  // The largest set of free surfels on the cylinder that hang together, ascending.
+  std::vector<int> largest_part(const Cylinder& c) const {
+    std::vector<char> open(from_.size(), 0);
+    each_on(c, [&](int i, bool on) { open[i] = on && free_[i]; });
+    std::vector<int> best, part;
+    for (int i = 0; i < int(open.size()); ++i) {
+      if (!open[i]) continue;
+      open[i] = 0, part.assign(1, i);
+      for (size_t k = 0; k < part.size(); ++k)
+        for (const int j : near_[part[k]])
+          if (open[j]) open[j] = 0, part.push_back(j);
+      if (part.size() > best.size()) best.swap(part);
+    }
+    std::sort(best.begin(), best.end());
+    return best;
+  }
+
+  using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  const std::vector<int> from_;  // ascending
+  const double reach_, cosine_;
+  Points points_, normals_;  // a surfel a row
+  std::vector<char> free_;
+  std::vector<std::vector<int>> near_;
+  std::vector<Cylinder> proposed_;
+  std::priority_queue<std::pair<int, int>> queue_;  // most surfels, index into proposed_
+};
+
 class Cylinders {
  public:
   Cylinders(double spacing, const CylinderOptions& options, const std::vector<char>& taken,
             SurfelSet* set)
       : spacing_(spacing), options_(options), taken_(taken), set_(*set) {}
 
-  // What RANSAC finds, the largest first, and the surfels on it.
-  std::vector<std::pair<Cylinder, std::vector<int>>> candidates() const {
-    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-    using Item = std::tuple<Kernel::Point_3, Kernel::Vector_3, int>;
-    using Traits =
-        CGAL::Shape_detection::Efficient_RANSAC_traits<Kernel, std::vector<Item>,
-                                                       CGAL::Nth_of_tuple_property_map<0, Item>,
-                                                       CGAL::Nth_of_tuple_property_map<1, Item>>;
-    using Shape = CGAL::Shape_detection::Cylinder<Traits>;
-    const auto vector = [](const auto& v) { return Vector3d(v.x(), v.y(), v.z()); };
-    std::vector<Item> items;
-    for (int i = 0; i < set_.size(); ++i) {
-      const Vector3d p = set_.center(i), n = set_.normal(i);
-      if (!taken_[i])
-        items.emplace_back(Kernel::Point_3(p.x(), p.y(), p.z()),
-                           Kernel::Vector_3(n.x(), n.y(), n.z()), i);
+  // Lays surfels on cylinders, the largest first; how many.
+  int lay_all() {
+    std::vector<int> from;
+    for (int i = 0; i < set_.size(); ++i)
+      if (!taken_[i]) from.push_back(i);
+    if (int(from.size()) < options_.fewest) return 0;
+    CylinderPool pool(set_, std::move(from), spacing_, options_);
+    int count = 0;
+    Cylinder c;
+    for (std::vector<int> on; pool.next(options_.fewest, &c, &on);) {
+      if (arc(c, on) < kLeastArc * options_.arc_deg * kDegree) continue;
+      pool.remove(on);  // be it a cylinder or not
+      if (!settle(&c, &on)) continue;
+      pool.remove(on);
+      lay(c, on);
+      count += int(on.size());
     }
-    std::vector<std::pair<Cylinder, std::vector<int>>> found;
-    if (int(items.size()) < options_.fewest) return found;
-    CGAL::get_default_random() = CGAL::Random(0);  // of this thread; it chooses the samples
-    CGAL::Shape_detection::Efficient_RANSAC<Traits> ransac;
-    ransac.set_input(items);  // which it reorders
-    ransac.template add_shape_factory<Shape>();
-    typename CGAL::Shape_detection::Efficient_RANSAC<Traits>::Parameters parameters;
-    parameters.probability = kMissed;
-    parameters.min_points = options_.fewest;
-    parameters.epsilon = options_.reach * spacing_;
-    parameters.cluster_epsilon = kGap * spacing_;
-    parameters.normal_threshold = std::cos(options_.angle_deg * kDegree);
-    ransac.detect(parameters);
-    for (const auto& shape : ransac.shapes()) {
-      const Shape& s = dynamic_cast<const Shape&>(*shape);
-      Cylinder c;
-      c.point = vector(s.axis().point(0)), c.axis = vector(s.axis().to_vector()).normalized();
-      c.radius = s.radius();
-      std::vector<int> on;
-      for (const auto k : s.indices_of_assigned_points()) on.push_back(std::get<2>(items[k]));
-      std::sort(on.begin(), on.end());
-      found.push_back({c, std::move(on)});
-    }
-    return found;
+    return count;
   }
 
+ private:
   // Fits the cylinder to what lies on it, and finds that anew; false if it is none.
   bool settle(Cylinder* c, std::vector<int>* on) const {
     for (int round = 0; round < kRounds; ++round) {
@@ -107,7 +230,6 @@ class Cylinders {
     }
   }
 
- private:
   // Gauss-Newton over two shifts and two tilts of the axis, and the radius.
   bool fit(const std::vector<int>& on, Cylinder* c) const {
     for (int step = 0; step < kSteps; ++step) {
@@ -206,14 +328,7 @@ class Cylinders {
 int round_surfels(double spacing, const CylinderOptions& options, const std::vector<char>& taken,
                   SurfelSet* set) {
   if (set->size() == 0 || options.fewest <= 0) return 0;
-  Cylinders cylinders(spacing, options, taken, set);
-  int count = 0;
-  for (auto& [cylinder, on] : cylinders.candidates()) {
-    if (!cylinders.settle(&cylinder, &on)) continue;
-    cylinders.lay(cylinder, on);
-    count += int(on.size());
-  }
-  return count;
+  return Cylinders(spacing, options, taken, set).lay_all();
 }
 
 }  // namespace sketchsplat

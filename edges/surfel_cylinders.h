@@ -16,10 +16,11 @@ struct CylinderOptions {
   int fewest = 40;      ///< surfels that make a cylinder; 0: none are looked for
 };
 
-/// Lays surfels that make a cylinder exactly on it: candidates by RANSAC (Schnabel et al.,
-/// Efficient RANSAC for point-cloud shape detection, Computer Graphics Forum 2007), fitted to
-/// places and normals of what lies on them from end to end. Surfels that are `taken`, one flag
-/// each, are left alone. Returns how many lie on cylinders now. The same set, the same result.
+/// Lays surfels that make a cylinder exactly on it: pairs of neighbours propose cylinders, as in
+/// RANSAC (Schnabel et al., Efficient RANSAC for point-cloud shape detection, Computer Graphics
+/// Forum 2007); those with the largest connected sets of surfels are fitted to places and normals
+/// of what lies on them from end to end. Surfels that are `taken`, one flag each, are left alone.
+/// Returns how many lie on cylinders now. The same set, the same result.
 int round_surfels(double spacing, const CylinderOptions& options, const std::vector<char>& taken,
                   SurfelSet* set);
 

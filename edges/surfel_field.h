@@ -75,8 +75,9 @@ SurfelField train_surfels(const std::vector<TrainingView>& views,
                           const SureEdges& sure = {}, const std::function<void()>& step = {});
 
 /// What the field looks like from a view: depth and unit normals where alpha >= 1/2, else none. Of
-/// the surfels that make a pixel those count that lie with the heaviest part of them on one surface:
-/// normals within `mode_deg` of each other and on one plane to the spacing; 0: all of them, blended.
+/// the surfels that make a pixel those count that lie with the heaviest part of them on one
+/// surface: normals within `mode_deg` of each other and on one plane to the spacing; 0: all of
+/// them, blended.
 GeometryMaps render_geometry(const SurfelField& field, const View& view, double mode_deg);
 
 /// PLY (binary, little endian) in the layout that viewers of 2DGS open: x, y, z, nx, ny, nz,

@@ -39,7 +39,8 @@ SurfelGradient spread_gradient(const SurfelGradient& part, const std::vector<int
 struct DensityChange {
   std::vector<int> kept;       ///< indices of the old surfels that stay
   Eigen::MatrixXd added;       ///< kRows x M, appended
-  int pruned = 0, split = 0, merged = 0;  ///< surfels: gone for nothing; halved; swallowed by others
+  int pruned = 0, split = 0,
+      merged = 0;  ///< surfels: gone for nothing; halved; swallowed by others
 };
 
 /// Splits where the splitting matrix (3 x N, SurfelGradient) has a negative eigenvalue, the most

@@ -89,7 +89,8 @@ Illumination fit_illumination(const SurfelCloud& cloud, const Eigen::VectorXd& g
   Illumination out;
   out.center = bounds.center();
   out.extent = std::max(1e-300, bounds.sizes().maxCoeff());
-  Eigen::Matrix<double, kUnknowns, kUnknowns> A = Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
+  Eigen::Matrix<double, kUnknowns, kUnknowns> A =
+      Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
   Eigen::Matrix<double, kUnknowns, 1> rhs = Eigen::Matrix<double, kUnknowns, 1>::Zero();
   for (int i = 0; i < cloud.size(); ++i) {
     if (!(weight[i] > 0)) continue;

@@ -29,7 +29,8 @@ struct Illumination {
 Eigen::Matrix<double, kShadingTerms, 1> shading_basis(
     const Eigen::Vector3d& n, Eigen::Matrix<double, kShadingTerms, 3>* by_normal = nullptr);
 
-/// Unit normal of a surfel from its quaternion (w, x, y, z) of any length, and the 3 x 4 derivative.
+/// Unit normal of a surfel from its quaternion (w, x, y, z) of any length, and the 3 x 4
+/// derivative.
 Eigen::Vector3d surfel_normal(const Eigen::Vector4d& rotation,
                               Eigen::Matrix<double, 3, 4>* by_rotation = nullptr);
 

@@ -25,12 +25,14 @@ def evaluate(arguments, results):
     """Means over the scenes, and the counts of scenes and of missing results."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "evaluation.json")
-        command = [arguments.binary, "evaluate", "--pred", results, "--gt", arguments.gt, "--protocol",
-                   arguments.protocol, "--missing", arguments.missing, "--json", path]
+        command = [arguments.binary, "evaluate", "--pred", results, "--gt", arguments.gt,
+                   "--protocol", arguments.protocol, "--missing", arguments.missing, "--json",
+                   path]
         try:
             done = subprocess.run(command, stdout=subprocess.DEVNULL)
         except OSError as error:
-            sys.exit("%s: %s (--binary says where the program is)" % (arguments.binary, error.strerror))
+            sys.exit("%s: %s (--binary says where the program is)" %
+                     (arguments.binary, error.strerror))
         if done.returncode:
             sys.exit(done.returncode)
         with open(path) as file:

@@ -51,6 +51,21 @@ Prediction normalized(Prediction prediction, const Normalization& to_unit) {
   return prediction;
 }
 
+// Samples are taken every 0.0005 and 0.001 objects.
+void check_sampled_length(double length, const std::string& path) {
+  constexpr double kMost = 1e4;  // objects; drawings of the largest have some hundred
+  if (!(length <= kMost))
+    throw InputError(path, "edges of at most 10000 times the size of the true object in all",
+                     std::to_string(length) + " times");
+}
+
+double bound_of_length(const Prediction& prediction) {
+  double length = 0;
+  for (const auto& line : prediction.lines) length += polyline_length(line);
+  for (const auto& curve : prediction.curves) length += polyline_length(curve);
+  return length;
+}
+
 std::vector<TrueEdge> true_edges(const GroundTruth& truth, const Normalization& to_unit) {
   std::vector<TrueEdge> edges;
   for (const auto& curve : truth.curves) {
@@ -201,8 +216,12 @@ Evaluation evaluate(const Prediction& prediction, const GroundTruth& truth,
                     const EvaluateOptions& options) {
   const Normalization to_unit(truth);
   Prediction unit = normalized(prediction, to_unit);
-  add_strokes(&unit);
   const std::vector<TrueEdge> edges = true_edges(truth, to_unit);
+  check_sampled_length(bound_of_length(unit), prediction.path);
+  double true_length = 0;
+  for (const TrueEdge& edge : edges) true_length += polyline_length(edge.polyline);
+  check_sampled_length(true_length, truth.path);
+  add_strokes(&unit);
   TruthSamples dense = dense_truth(edges), samples;
   samples.points = truth.samples;
   to_unit.apply(&samples.points);

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
+
+#include "datasets/kd_tree.h"
 
 namespace sketchsplat {
 
@@ -11,16 +12,13 @@ class NearestPoints {
  public:
   /// `points` 3 x N; N may be 0.
   explicit NearestPoints(const Eigen::Matrix3Xd& points);
-  ~NearestPoints();
-  NearestPoints(NearestPoints&&) noexcept;
 
   /// Euclidean distances of the columns of `queries` (3 x M) to the nearest point, M values;
   /// infinite if there are no points. The same for any number of threads.
   Eigen::VectorXd distances(const Eigen::Matrix3Xd& queries) const;
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  KdTree tree_;
 };
 
 }  // namespace sketchsplat

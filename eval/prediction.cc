@@ -23,12 +23,16 @@ using nlohmann::json;
 namespace sketchsplat {
 namespace {
 
+constexpr double kLargest = 1e100;  // squares and cubes of it overflow
+constexpr char kPlaces[] = "coordinates below 1e100";
+
 // All numbers of nested lists, in order: files differ in how they group coordinates.
 void flatten(const json& value, const std::string& path, std::vector<double>* out) {
   if (value.is_array()) {
     for (const json& item : value) flatten(item, path, out);
   } else if (value.is_number()) {
     out->push_back(value.get<double>());
+    if (!(std::abs(out->back()) < kLargest)) throw InputError(path, kPlaces, value.dump());
   } else {
     throw InputError(path, "finite coordinates", value.dump());
   }
@@ -144,9 +148,7 @@ Prediction read_json(const std::string& path) {
     if (document.contains("strokes")) {
       in.clear();
       in.seekg(0);
-      const Sketch sketch = read_sketch_json(in, path);
-      const std::vector<CurveChain> chains = curve_chains(sketch);
-      for (size_t c = 0; c < chains.size(); ++c) add_curve(sketch, chains[c], int(c), &prediction);
+      prediction = prediction_of(read_sketch_json(in, path));
     } else if (document.contains("points")) {
       prediction.points_only = true;
       const auto points = groups_of<1>(document, {"points"}, path);
@@ -201,6 +203,7 @@ Eigen::Matrix3Xd samples_along(const std::vector<double>& numbers) {
 
 Prediction read_obj(const std::string& path) {
   std::ifstream in(path);
+  check_length(&in, path);
   Prediction prediction;
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::vector<double>> strokes;
@@ -214,6 +217,7 @@ Prediction read_obj(const std::string& path) {
     if (key == "v") {
       Eigen::Vector3d p;
       if (!(line >> p[0] >> p[1] >> p[2])) throw InputError(path, "three numbers after v", text);
+      if (!(p.cwiseAbs().maxCoeff() < kLargest)) throw InputError(path, kPlaces, text);
       vertices.push_back(p);
     } else if (key == "o") {
       grouped = begins = true;
@@ -270,6 +274,13 @@ void read_strokes_beside(const fs::path& folder, Prediction* prediction) {
 }
 
 }  // namespace
+
+Prediction prediction_of(const Sketch& sketch) {
+  Prediction prediction;
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  for (size_t c = 0; c < chains.size(); ++c) add_curve(sketch, chains[c], int(c), &prediction);
+  return prediction;
+}
 
 bool has_prediction(const std::string& path) {
   std::error_code none;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sketches/sketch.h"
+
 namespace sketchsplat {
 
 /// What a file tells about a stroke beside where it is.
@@ -38,6 +40,9 @@ struct Prediction {
 ///           sketch.obj
 /// Throws InputError.
 Prediction read_prediction(const std::string& path);
+
+/// What read_prediction() reads from the sketch.json of this sketch.
+Prediction prediction_of(const Sketch& sketch);
 
 /// Is there a file that read_prediction() would read (broken or not)?
 bool has_prediction(const std::string& path);

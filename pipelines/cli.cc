@@ -42,7 +42,7 @@ void register_fields(CLI::App* app, const std::vector<Field>& fields, Texts* tex
             for (const std::string& text : given) all += (all.empty() ? "" : "\n") + text;
             if (field.value_optional && all.empty()) all = "-";
           });
-      option->allow_extra_args(field.positional);  // --name takes one at a time
+      option->allow_extra_args(field.positional || field.takes_more);
       if (field.value_optional) option->expected(0, 1)->take_last();
       continue;
     }
@@ -76,7 +76,7 @@ void check_required(const Verb& verb, const Texts& texts) {
 // CLI11 leaves what it does not know in remaining().
 [[noreturn]] void refuse_extra(const std::string& extra, const std::vector<Field>& fields,
                                const std::string& verb) {
-  std::vector<std::string> flags = {"--help", "--version"};
+  std::vector<std::string> flags = {"--help", "--help-all", "--version"};
   for (const Field& field : fields)
     if (!field.positional) flags.push_back("--" + field.name);
   const bool is_flag = extra.size() > 1 && extra[0] == '-';
@@ -109,13 +109,14 @@ Progress::Mode progress_mode(const CommonOptions& common) {
 struct Parser {
   CLI::App app;
   Texts texts, common_texts;  // of the verb, of all verbs: they may share names
-  bool help = false, version = false, markdown = false, manual = false;
+  bool help = false, help_all = false, version = false, markdown = false, manual = false;
   std::string completion;  // a shell
   std::vector<CLI::App*> subcommands;
 
   Parser(const std::vector<Verb>& verbs, const std::vector<Field>& common) {
     app.set_help_flag();
     app.add_flag("-h,--help", help);
+    app.add_flag("--help-all", help_all);
     app.add_flag("--version", version);
     app.add_flag("--options-markdown", markdown);
     app.add_flag("--man", manual);
@@ -158,9 +159,10 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
     if (std::find(shells.begin(), shells.end(), parser.completion) == shells.end())
       throw UsageError("--completion: expected bash, zsh or fish, got '" + parser.completion + "'");
     std::cout << completion_script(parser.completion, verbs, common_fields.list);
-  } else if ((parser.help || help_word) && verb) {
-    std::cout << verb_help(*verb, common_fields.list);
-  } else if ((parser.help && extras.empty()) || (help_word && extras.size() == 1)) {
+  } else if ((parser.help || parser.help_all || help_word) && verb) {
+    std::cout << verb_help(*verb, common_fields.list, parser.help_all);
+  } else if (((parser.help || parser.help_all) && extras.empty()) ||
+             (help_word && extras.size() == 1)) {
     std::cout << program_help(verbs, common_fields.list);
   } else if (!verb) {
     if (extras.empty()) throw UsageError("expected a verb: " + verb_names(verbs));

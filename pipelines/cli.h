@@ -24,7 +24,8 @@ enum ExitStatus {
   kNotAllIn = 7,
 };
 
-/// The verb did its work, and what it looked at is not as it should be; one sentence. Exit status 7.
+/// The verb did its work, and what it looked at is not as it should be; one sentence. Exit
+/// status 7.
 struct NotAllInError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -50,7 +50,7 @@ std::vector<BatchScene> scenes_of(const BatchArguments& arguments, Progress* pro
   search.roots = lines_of(arguments.roots);
   if (!arguments.list.empty()) search.list = read_scene_list(arguments.list);
   search.match = lines_of(arguments.match);
-  search.format = arguments.run.format;
+  search.format = arguments.run.open.format;
   search.out = arguments.run.out;
   std::vector<std::string> warnings;
   std::vector<BatchScene> mine;
@@ -204,8 +204,10 @@ Verb batch_verb() {
   f.add("match", &arguments->match, "GLOB",
         "Only scenes whose name, or its last part, is like this; may be repeated")
       .several = true;
-  f.choose("format", &arguments->run.format, scene_formats(),
+  f.choose("format", &arguments->run.open.format, scene_formats(),
            "What the folders are; if left out, their files decide");
+  f.add("allow-outside", &arguments->run.open.allow_outside,
+        "Read images that scene files place outside of their folders, too");
   list_run_fields(arguments.get(), &f);
   list_fields(&arguments->run.method, &f);
   list_fields(&arguments->run.output, &f);

@@ -13,6 +13,7 @@
 #include "edges/undistort.h"
 #include "eval/edge_maps.h"
 #include "eval/map_errors.h"
+#include "datasets/open_options.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/detectors.h"
@@ -25,7 +26,8 @@ namespace {
 constexpr double kTolerance = 1.5;  // [px] of --score
 
 struct DetectArguments {
-  std::string scene, out, format, masks;
+  std::string scene, out, masks;
+  OpenOptions open;
   DetectionOptions detection;
   double ridge_px = 0.7;  // half of the width in which people and networks draw edges
   bool score = false;
@@ -175,7 +177,7 @@ void tell(const std::vector<Detection>& found, const std::vector<ViewScore>& sco
 }
 
 void run_detect(const DetectArguments& arguments, bool json, Progress* progress) {
-  Scene scene = open_scene(arguments.scene, arguments.format);
+  Scene scene = open_scene(arguments.scene, arguments.open);
   if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
   prepare_output_folder(map_folder(arguments));
@@ -201,8 +203,10 @@ Verb detect_verb() {
       f.add("out", &arguments->out, "DIR", "Maps go to DIR/edge_<detector>/, named as images");
   out.required = true;
   out.short_name = "o";
-  f.choose("format", &arguments->format, scene_formats(),
+  f.choose("format", &arguments->open.format, scene_formats(),
            "What the folder is; if left out, its files decide");
+  f.add("allow-outside", &arguments->open.allow_outside,
+        "Read images that the scene file places outside of its folder, too");
   f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
   list_fields(&arguments->detection, &f);
   f.group("Maps");

@@ -146,7 +146,8 @@ Verb evaluate_verb() {
   f.add("json", &arguments->json, "FILE",
         "Write all numbers to this file, too; without FILE to standard output, nothing else")
       .value_optional = true;
-  f.add("out", &arguments->out, "DIR", "Write evaluation.json, evaluation.csv, strokes.csv and overlays there");
+  f.add("out", &arguments->out, "DIR",
+        "Write evaluation.json, evaluation.csv, strokes.csv and overlays there");
   f.add("overlays", &arguments->overlays, "images", 0, 100,
         "Draw missed edges (red) and wrong strokes (blue) over so many images");
   Verb verb;

@@ -13,11 +13,14 @@
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/confidence.h"
+#include "pipelines/known_scale.h"
 #include "pipelines/outputs.h"
+#include "pipelines/overlay.h"
 #include "pipelines/print_json.h"
 #include "pipelines/report.h"
 #include "pipelines/sketch_input.h"
 #include "sketches/io.h"
+#include "sketches/io_glb.h"
 #include "sketches/json_text.h"
 
 namespace sketchsplat {
@@ -33,26 +36,27 @@ struct ExportArguments {
   double spacing = OutputOptions().point_spacing;
 };
 
-const std::vector<std::string> kFormats = {"step", "dxf",        "svg",   "obj",
-                                           "ply",  "parametric", "sketch"};
+const std::vector<std::string> kFormats = {"step", "dxf", "svg",        "obj",
+                                           "glb",  "ply", "parametric", "sketch"};
 
 // The format that the ending of a file name stands for; empty if none.
 std::string format_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".step" || ending == ".stp") return "step";
-  for (const char* same : {"dxf", "svg", "obj", "ply"})
+  for (const char* same : {"dxf", "svg", "obj", "glb", "ply"})
     if (ending == std::string(".") + same) return same;
   if (ending == ".json") return "parametric";
   return "";
 }
 
 // What sketch.json holds beside the sketch: the options, the names of the views.
-std::string other_members(const std::string& path, bool without_proposed) {
+std::string other_members(const std::string& path, bool without_proposed, const KnownScale& scale) {
   std::ifstream in(path);
   nlohmann::ordered_json j = parse_json<nlohmann::ordered_json>(in, path);
   for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
   if (without_proposed) j.erase("proposed");
+  if (!scale.source.empty()) j["scale"] = nlohmann::ordered_json::parse(scale_json(scale));
   return j.dump();
 }
 
@@ -81,10 +85,18 @@ Sketch with_proposed(Sketch sketch, const std::string& given) {
   return sketch;
 }
 
-void write(std::ostream& out, const Sketch& sketch, const ExportArguments& arguments,
-           const std::string& format) {
-  const std::string name = std::filesystem::path(arguments.out).stem().string();
+// From the options, or else from the file.
+KnownScale scale_of(const Sketch& sketch, const ExportArguments& arguments) {
   const CadOptions& cad = arguments.cad;
+  if (!cad.scale_given && !has_reference(cad))
+    return stated_scale(cad, sketch_file(arguments.sketch));
+  return known_scale(cad, sketch, sketch_origin(arguments.sketch).footprint, {});
+}
+
+void write(std::ostream& out, const Sketch& sketch, const ExportArguments& arguments,
+           const KnownScale& scale, const std::string& format) {
+  const std::string name = std::filesystem::path(arguments.out).stem().string();
+  const CadOptions cad = at_scale(arguments.cad, scale);
   if (format == "step") {
     write_step(out, sketch, step_options(sketch, name, cad));
   } else if (format == "dxf") {
@@ -93,6 +105,8 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
     write_svg(out, sketch, {name, cad.scale, cad.unit});
   } else if (format == "obj") {
     write_obj(out, sketch, arguments.deflection, cad.scale);
+  } else if (format == "glb") {
+    write_glb(out, sketch, {name, cad.scale * millimetres(cad.unit) / 1000, kind_color});
   } else if (format == "ply") {
     const double size = sketch_extent(sketch).size;
     write_edge_points(out, sketch, arguments.spacing * (size > 0 ? size : 1));
@@ -100,15 +114,22 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
     write_parametric_edges(out, sketch);
   } else {
     write_sketch_json(out, sketch,
-                      other_members(sketch_file(arguments.sketch), arguments.proposed));
+                      other_members(sketch_file(arguments.sketch), arguments.proposed, scale));
   }
 }
 
 // Options that the format cannot obey.
 void check(const ExportArguments& arguments, const std::string& format) {
-  const bool cad = format == "step" || format == "dxf" || format == "svg" || format == "obj";
+  const bool cad =
+      format == "step" || format == "dxf" || format == "svg" || format == "obj" || format == "glb";
+  check_scale(arguments.cad);
+  if (wants_tags(arguments.cad))
+    throw UsageError("--scale-by tag is for reconstruct: a sketch holds no tags");
+  if (!cad && format != "sketch" && has_reference(arguments.cad))
+    throw UsageError("--scale-by is for step, dxf, svg, obj and sketch: " + format +
+                     " is in the scene's own units");
   if (!cad && arguments.cad.scale != 1)
-    throw UsageError("--scale is for step, dxf, svg and obj: " + format +
+    throw UsageError("--scale is for step, dxf, svg, obj and glb: " + format +
                      " is in the scene's own units");
   if (format != "step" && arguments.cad.faces)
     throw UsageError("--faces is for step: " + format + " holds curves only");
@@ -132,8 +153,9 @@ void run_export(const ExportArguments& arguments, bool json, Progress* progress)
   Sketch all = read_sketch(arguments.sketch);
   if (arguments.proposed) all = with_proposed(all, arguments.sketch);
   const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
+  const KnownScale scale = scale_of(all, arguments);
   write_atomically(arguments.out,
-                   [&](std::ostream& out) { write(out, sketch, arguments, format); });
+                   [&](std::ostream& out) { write(out, sketch, arguments, scale, format); });
   const int left_out = all.size() - sketch.size();
   if (json)
     print_json({{"file", arguments.out},
@@ -170,7 +192,7 @@ Verb export_verb() {
   verb.summary = "Write a sketch in another format";
   verb.examples = {"sketchsplat export out/part/sketch.json --out part.step --unit inch --scale 2",
                    "sketchsplat export out/part -o part.step --faces --scale 50",
-                   "sketchsplat export out/part -o part.dxf --scale 50",
+                   "sketchsplat export out/part -o part.dxf --scale-by circle:12=25.4mm",
                    "sketchsplat export out/part -o part.obj --deflection 1e-5"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {

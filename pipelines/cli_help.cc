@@ -55,9 +55,10 @@ std::string option_lines(const Field& field) {
   return text + line + "\n";
 }
 
-std::string option_groups(const std::vector<Field>& fields) {
+std::string option_groups(const std::vector<Field>& fields, bool all) {
   std::string text, group;
   for (const Field& field : fields) {
+    if (field.expert && !all) continue;
     if (field.group != group) text += "\n" + field.group + ":\n";
     group = field.group;
     text += option_lines(field);
@@ -116,21 +117,29 @@ std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field
     text += line + verb.summary + "\n";
   }
   text += "  (sketchsplat VERB --help shows the options of a verb)\n";
-  text += option_groups(common);
+  text += option_groups(common, true);
   text += "  -h, --help                  Show this, or the help of a verb\n";
   text += "  --version                   Show the version, the commit and the libraries\n";
   text += "  --man                       Show the manual page, for man -l -\n";
   text += "  --completion SHELL          Show what completes words in bash, zsh or fish\n";
   text +=
       "\nExit status: 0 done, 2 wrong usage, 3 unusable input, 4 too little in the scene,\n"
-      "5 output cannot be written, 6 a batch of which some scenes failed, 7 inspected and not all in,\n"
+      "5 output cannot be written, 6 a batch of which some scenes failed, 7 inspected and not all "
+      "in,\n"
       "1 a defect of the program.\n";
   return text;
 }
 
-std::string verb_help(const Verb& verb, const std::vector<Field>& common) {
-  return examples(verb.examples) + "\n" + verb.summary + ".\n\nUsage: " + usage_line(verb) + "\n" +
-         option_groups(verb.fields) + option_groups(common);
+std::string verb_help(const Verb& verb, const std::vector<Field>& common, bool all) {
+  const auto experts = std::count_if(verb.fields.begin(), verb.fields.end(),
+                                     [](const Field& field) { return field.expert; });
+  std::string text = examples(verb.examples) + "\n" + verb.summary + ".\n\nUsage: " +
+                     usage_line(verb) + "\n" + option_groups(verb.fields, all);
+  if (experts == 0 || all) return text + option_groups(common, true);
+  text += "\nEverywhere:";  // a line for all of them: sketchsplat --help explains them
+  for (const Field& field : common) text += " " + with_short_name(field);
+  return text + "\n--help-all shows " + std::to_string(experts) +
+         " more options, for experts, and explains these.\n";
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {

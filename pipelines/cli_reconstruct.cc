@@ -11,20 +11,23 @@
 
 #include "datasets/errors.h"
 #include "datasets/frame.h"
+#include "datasets/open_options.h"
 #include "pipelines/atomic_file.h"
 #include "pipelines/cli.h"
 #include "pipelines/estimate.h"
 #include "pipelines/find_cameras.h"
+#include "pipelines/known_scale.h"
 #include "pipelines/outputs.h"
 #include "pipelines/print_json.h"
 #include "pipelines/reconstruct.h"
+#include "pipelines/scene_tags.h"
 
 namespace sketchsplat {
 namespace {
 
 struct ReconstructArguments {
   std::string scene, out;
-  std::string format;  // empty: found out
+  OpenOptions open;
   bool dry_run = false;
   std::string images;  // photographs without cameras, instead of a scene
   std::string masks;
@@ -62,16 +65,33 @@ Scene photographs_in(const std::string& folder) {
   return scene;
 }
 
+void tell_scale(const KnownScale& scale) {
+  if (scale.source.empty()) return;
+  std::cout << scale.source << ": a world unit is " << scale.units_per_world << " "
+            << length_unit_names()[int(scale.unit)];
+  if (!std::isnan(scale.sigma_relative))
+    std::cout << ", with a standard deviation of " << 100 * scale.sigma_relative << " %";
+  std::cout << "\n";
+}
+
 // What would be read, how long it takes, and how much memory.
-void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool json) {
+void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool json,
+               Progress* progress) {
   double pixels = 0;
   for (const View& view : scene.views) pixels += double(view.camera.width) * view.camera.height;
   const bool photographs = !arguments.images.empty();
   const int views = int(scene.views.size()), threads = omp_get_max_threads();
   const Load load = expected_load(views, pixels, arguments.method, threads);
   const int missing = missing_maps(scene, arguments.method.detector);
+  KnownScale scale;
+  if (arguments.method.tags && !photographs)
+    scale = known_scale(arguments.output.cad, {}, 0, measure_tags(scene, nullptr, progress));
   if (json) {
-    print_json({{"scene", scene.folder},
+    const nlohmann::ordered_json size =
+        scale.source.empty() ? nlohmann::ordered_json()
+                             : nlohmann::ordered_json::parse(scale_json(scale));
+    print_json({{"scale", size},
+                {"scene", scene.folder},
                 {"format", scene.format},
                 {"views", views},
                 {"pixels", pixels},
@@ -88,11 +108,13 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
   if (missing > 0) std::cout << ", " << missing << " edge maps missing";
   std::cout << "\nroughly " << rough_duration(load.seconds) << " with " << threads
             << (threads == 1 ? " thread" : " threads")
-            << (photographs ? " after COLMAP, which takes far longer, " : ", ") << std::lround(load.memory_mb)
-            << " MB, into " << arguments.out << "\n";
+            << (photographs ? " after COLMAP, which takes far longer, " : ", ")
+            << std::lround(load.memory_mb) << " MB, into " << arguments.out << "\n";
+  tell_scale(scale);
 }
 
-void tell_result(const Sketch& sketch, const ReconstructArguments& arguments, bool json) {
+void tell_result(const Sketch& sketch, const KnownScale& scale,
+                 const ReconstructArguments& arguments, bool json) {
   if (json) {
     std::ifstream in(arguments.out + "/report.json");
     nlohmann::ordered_json result = {{"out", arguments.out}};
@@ -103,6 +125,7 @@ void tell_result(const Sketch& sketch, const ReconstructArguments& arguments, bo
   std::cout << arguments.out << "/sketch.step: " << sketch.size() << " curves, "
             << sketch.nodes.cols() << " junctions\n"
             << arguments.out << "/report.html: to look at\n";
+  tell_scale(scale);
 }
 
 // The scene, or the photographs with the cameras that COLMAP finds.
@@ -110,7 +133,7 @@ Scene open_views(const ReconstructArguments& arguments, const CommonOptions& com
                  RunReport* report, Progress* progress) {
   Scene scene;
   if (arguments.images.empty()) {
-    scene = open_scene(arguments.scene, arguments.format);
+    scene = open_scene(arguments.scene, arguments.open);
   } else {
     prepare_output_folder(arguments.out);
     std::error_code none;
@@ -130,12 +153,14 @@ Scene open_views(const ReconstructArguments& arguments, const CommonOptions& com
 void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common,
                      Progress* progress) {
   arguments.method.seed = common.seed;
+  check_scale(arguments.output.cad);
+  arguments.method.tags = wants_tags(arguments.output.cad);
   if (!arguments.scene.empty() && !arguments.images.empty())
     throw UsageError("reconstruct takes SCENE or --images DIR, not both");
   if (arguments.dry_run) {
     tell_plan(arguments.images.empty() ? open_views(arguments, common, nullptr, progress)
                                        : photographs_in(arguments.images),
-              arguments, common.json);
+              arguments, common.json, progress);
     return;
   }
   RunReport before;
@@ -146,8 +171,9 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   report.started = before.started;
   report.stages.insert(report.stages.begin(), before.stages.begin(), before.stages.end());
   report.warnings.insert(report.warnings.begin(), before.warnings.begin(), before.warnings.end());
-  write_outputs(arguments.out, result, scene, arguments.method, arguments.output, progress);
-  tell_result(result.sketch, arguments, common.json);
+  const KnownScale scale =
+      write_outputs(arguments.out, result, scene, arguments.method, arguments.output, progress);
+  tell_result(result.sketch, scale, arguments, common.json);
 }
 
 }  // namespace
@@ -162,12 +188,15 @@ Verb reconstruct_verb() {
   Field& out = f.add("out", &arguments->out, "DIR", "The folder to write into, made if missing");
   out.required = true;
   out.short_name = "o";
-  f.choose("format", &arguments->format, scene_formats(),
+  f.choose("format", &arguments->open.format, scene_formats(),
            "What the folder is; if left out, its files decide");
+  f.add("allow-outside", &arguments->open.allow_outside,
+        "Read images that the scene file places outside of its folder, too")
+      .expert = true;
   f.add("dry-run", &arguments->dry_run,
-        "Say what would be read, how long it would take, and how much memory");
+        "Say what would be read, how long it takes, how much memory");
   f.add("images", &arguments->images, "DIR",
-        "Photographs without cameras: COLMAP finds them first, into colmap/ of --out");
+        "Photographs without cameras: COLMAP finds them first");
   f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
   list_fields(&arguments->method, &f);
   list_fields(&arguments->output, &f);
@@ -175,9 +204,9 @@ Verb reconstruct_verb() {
   verb.name = "reconstruct";
   verb.summary = "Turn calibrated images of an object into its edges as curves";
   verb.examples = {"sketchsplat reconstruct scenes/part --out out/part",
-                   "sketchsplat reconstruct scenes/part -o out/part --preset accurate --threads 4",
                    "sketchsplat reconstruct scenes/part -o out/part --detector maps:DexiNed",
-                   "sketchsplat reconstruct --images photos -o out/part --masks masks"};
+                   "sketchsplat reconstruct --images photos -o out/part --masks masks",
+                   "sketchsplat reconstruct scenes/part -o out/part --scale-by tag=10mm"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {
     run_reconstruct(*arguments, common, progress);

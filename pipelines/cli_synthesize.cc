@@ -124,7 +124,8 @@ void list_picture_fields(SynthesizeOptions* o, Fields* f) {
   f->choose("style", &r.style,
             {"plain", "textured", "speckled", "dark", "glossy", "shadowed", "photo"},
             "Surface and light of the object; photo: JPEG photographs of it on a table in a room");
-  f->add("texture-strength", &r.texture_strength, "", 0, 1, "Contrast of what textured and speckled print");
+  f->add("texture-strength", &r.texture_strength, "", 0, 1,
+         "Contrast of what textured and speckled print");
   f->add("even-light", &r.even_light, "share", 0, 1,
          "Of the light comes evenly from all sides, as in a light tent: faces get one shade");
   f->add("noise", &r.noise, "grey levels", 0, 100, "Standard deviation of the noise");

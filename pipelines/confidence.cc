@@ -71,8 +71,8 @@ std::vector<StrokeFeatures> stroke_features(const Sketch& sketch, const EdgeWorl
     f.contrast = over(s.strength, strength);
     f.outline = s.outline;
     f.length_px = s.length_px;
-    f.joined = is_closed(stroke.kind) ? 1
-                                      : 0.5 * ((degree[stroke.begin] > 1) + (degree[stroke.end] > 1));
+    f.joined =
+        is_closed(stroke.kind) ? 1 : 0.5 * ((degree[stroke.begin] > 1) + (degree[stroke.end] > 1));
     f.sigma = extent > 0 ? 1000 * sketch.evidence[i].sigma / extent : 0;
     f.determined = double(sketch.evidence[i].determined) / freedom(stroke.kind);
   }

@@ -26,7 +26,8 @@ struct DetectionOptions {
   MapOptions maps;
   GeometryOptions geometry;
   SurfelFieldOptions surfels;
-  double surfel_snap_px = 3.0;  ///< [px] an edge of the picture says where one of surfels is; 0: never
+  double surfel_snap_px =
+      3.0;  ///< [px] an edge of the picture says where one of surfels is; 0: never
 };
 
 /// Finds the edgels of views.
@@ -36,12 +37,13 @@ class Detector {
   /// Looks at the whole scene before the first view is asked for: where a detector that learns from
   /// all views does so. Called once. Throws InputError.
   virtual void prepare(const Scene&, RunReport*, Progress*) {}
-  /// Edgels of one view, in its ideal pixels. From many threads. Throws InputError, also if an image or map has another
-  /// size than the view.
+  /// Edgels of one view, in its ideal pixels. From many threads. Throws InputError, also if an
+  /// image or map has another size than the view.
   virtual EdgelMap detect(const Scene& scene, const View& view) const = 0;
   /// Does it make the geometry itself, rather than read it?
   virtual bool learns() const { return false; }
-  /// The geometry in which the edges of a view were found; false if there is none. Throws InputError.
+  /// The geometry in which the edges of a view were found; false if there is none. Throws
+  /// InputError.
   virtual bool geometry(const Scene&, const View&, GeometryMaps*) const { return false; }
   /// What points on curves in space are by the geometry of all views: unknown wherever the detector
   /// has none of its own. Not before prepare().

@@ -37,7 +37,8 @@ std::vector<std::vector<int>> owners(const Sketch& sketch, const EdgeWorld& worl
 // Last sample from the middle in direction `way` up to which the views keep seeing the stroke. Gaps
 // before its present end may be crossed.
 int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int stroke,
-         const Run& run, int way, const ExtentOptions& options) {
+         const Run& run, int way, const std::vector<char>& outside,
+         const ExtentOptions& options) {
   const int from = run.at(0.5), end = run.at(way > 0 ? 1 : 0);
   const int num_views = int(owner.size());
   std::vector<int> recent(num_views);
@@ -46,6 +47,7 @@ int walk(const Matches& matches, const std::vector<std::vector<int>>& owner, int
   double balance = 0, best = 0;
   for (int k = from; k >= 0 && k < run.count; k += way) {
     const int i = run.first + k;
+    if (outside[i]) break;
     std::vector<int> here;
     for (int m = matches.first[i]; m < matches.first[i + 1]; ++m) {
       const SampleMatch& match = matches.matches[m];
@@ -122,14 +124,18 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
   const Matches matches = match_samples(world, samples, match);
   const std::vector<std::vector<int>> owner = owners(sketch, world);
 
+  std::vector<char> outside(position.size());
+  for (size_t i = 0; i < position.size() && !options.box.isEmpty(); ++i)
+    outside[i] = !options.box.contains(position[i]);
+
   Sketch out = sketch;
   for (int s = 0; s < sketch.size(); ++s) {
     const Run& run = runs[s];
     if (run.count == 0) continue;
     const Stroke& stroke = sketch.strokes[s];
     double t0 = 0, t1 = 1;
-    if (degree[stroke.begin] == 1) t0 = run.t(walk(matches, owner, s, run, -1, options));
-    if (degree[stroke.end] == 1) t1 = run.t(walk(matches, owner, s, run, +1, options));
+    if (degree[stroke.begin] == 1) t0 = run.t(walk(matches, owner, s, run, -1, outside, options));
+    if (degree[stroke.end] == 1) t1 = run.t(walk(matches, owner, s, run, +1, outside, options));
     if (!(t1 - t0 > 0.05)) continue;
     const ControlPoints c = subcurve(stroke.kind, control_points(sketch, s), t0, t1);
     out.nodes.col(stroke.begin) = c.p[0];

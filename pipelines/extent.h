@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "edges/lift.h"
 #include "sketches/sketch.h"
 
@@ -12,6 +14,7 @@ struct ExtentOptions {
   int min_views = 3;
   double gap_price = 0;        ///< times a gap's length must be seen beyond it; 0: it is an end
   double min_length_px = 3.0;  ///< [px] shorter strokes are left as they are
+  Eigen::AlignedBox3d box;     ///< ends stay in it, world units; empty: they may be anywhere
 };
 
 /// Lets every free end (a node that one stroke holds) run or retreat to where the views stop seeing

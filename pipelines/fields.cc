@@ -78,6 +78,7 @@ Field& Fields::push(const std::string& name, decltype(Field::value) value,
   field.choices = choices;
   field.help = help;
   field.group = group_;
+  field.expert = expert_;
   field.initial = text_of(field);
   list.push_back(std::move(field));
   return list.back();

@@ -38,15 +38,20 @@ struct Field {
   std::string unless;  ///< a required option need not be given if this one is
   bool positional = false;
   bool several = false;  ///< a text that may be given many times, joined by '\n'
+  bool takes_more = false;  ///< all values up to the next flag, not one at a time
   bool value_optional = false;  ///< "--name" alone is a text "-"
   bool alone = false;    ///< a flag that is a task of its own: nothing else is required then
+  bool expert = false;   ///< shown by --help-all, not by --help
   std::function<void()> applied;  ///< called after a user's value was assigned; may be empty
 };
 
 /// Lists the members of option structs, one line each. The structs need not know.
 class Fields {
  public:
-  void group(const std::string& heading) { group_ = heading; }
+  /// Fields that follow are of this group. `expert`: see Field.
+  void group(const std::string& heading, bool expert = false) {
+    group_ = heading, expert_ = expert;
+  }
 
   Field& add(const std::string& name, int* value, const std::string& unit, double low, double high,
              const std::string& help);
@@ -72,6 +77,7 @@ class Fields {
   Field& push(const std::string& name, decltype(Field::value) value,
               const std::vector<std::string>& choices, const std::string& help);
   std::string group_ = "Options";
+  bool expert_ = false;
 };
 
 /// The value as text: what a user would type to get it.

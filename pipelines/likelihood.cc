@@ -2,24 +2,33 @@
 #include "pipelines/likelihood.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sketchsplat {
 namespace {
 
 constexpr int kEvery = 3;      // samples: the hull is coarse
+constexpr int kRates = 10;     // shares of the views that see an edge, over which is integrated
+constexpr double kMedian = 1.4826;  // median of absolute values of a standard deviation, inverse
 constexpr int kManyViews = 8;  // see most strokes that are edges
 
-// Logarithms of the widths of edgels on strokes that many views see.
-std::vector<float> log_widths(const EdgeWorld& world, const Observation& every) {
-  std::vector<float> out;
+// Edgels on strokes that many views see.
+struct SureEdgels {
+  std::vector<float> log_width, distance_px;
+};
+
+SureEdgels sure_edgels(const EdgeWorld& world, const Observation& every) {
+  SureEdgels out;
   for (size_t s = 0; s + 1 < every.layout.first.size(); ++s) {
     const int first = every.layout.first[s], end = every.layout.first[s + 1];
     const int begin = every.matches.first[first], stop = every.matches.first[end];
     if (stop - begin < kManyViews * (end - first)) continue;
     for (int m = begin; m < stop; ++m) {
       const SampleMatch& match = every.matches.matches[m];
-      out.push_back(std::log(std::max(1e-3f, world.maps[match.view].edgels[match.edgel].width)));
+      const Edgel& e = world.maps[match.view].edgels[match.edgel];
+      out.log_width.push_back(std::log(std::max(1e-3f, e.width)));
+      out.distance_px.push_back(std::abs(match.distance_px));
     }
   }
   return out;
@@ -33,17 +42,25 @@ float quantile(std::vector<float>* values, double share) {
 
 }  // namespace
 
+double scatter_px(const EdgeWorld& world, const Observation& every) {
+  SureEdgels edgels = sure_edgels(world, every);
+  return edgels.distance_px.empty() ? 0 : kMedian * quantile(&edgels.distance_px, 0.5);
+}
+
 StrokeJudge::StrokeJudge(const EdgeWorld& world, const Observation& every, double reach_px,
                          double sigma_px, const EvidenceModel& model)
     : world_(world), every_(every), model_(model) {
   sigma_ = std::max(model.least_sigma_px, sigma_px);
-  peak_ = 2 * reach_px / (sigma_ * std::sqrt(2 * M_PI));
-  std::vector<float> widths = log_widths(world, every);
+  SureEdgels edgels = sure_edgels(world, every);
+  std::vector<float>& widths = edgels.log_width;
   if (!widths.empty()) {
+    // What the cameras err counts, too: edgels of a view scatter about a line beside the stroke.
+    sigma_ = std::max<double>(sigma_, kMedian * quantile(&edgels.distance_px, 0.5));
     // Sharp edges are the narrow ones: their spread is that below the median.
     log_width_ = quantile(&widths, 0.5);
     width_sigma_ = std::max(model.least_width_sigma, log_width_ - quantile(&widths, 0.16));
   }
+  peak_ = 2 * reach_px / (sigma_ * std::sqrt(2 * M_PI));
   const int strokes = int(every.layout.first.size()) - 1, views = int(world.views.size());
   in_view_.assign(strokes, std::vector<InView>(views));
 #pragma omp parallel for schedule(dynamic, 1)
@@ -96,16 +113,25 @@ double StrokeJudge::nats(int stroke, const EdgelFlags* others) const {
     }
   const bool blind = world_.hull.empty();
   double sum = 0;
+  // Without a hull nobody knows how many views something hides it from: all shares are as likely.
+  std::array<double, kRates> blind_sum = {};
   for (int v = 0; v < views; ++v) {
     const InView& in = in_view_[stroke][v];
     if (!(in.inside > 0)) continue;
     const double places = std::max(in.inside * (end - first), double(edgels[v]));
     const double ratio = (found[v] + (places - edgels[v]) * model_.miss) / places;
-    const double rate = blind ? model_.blind_rate
-                              : in.sure * model_.sure_rate + (1 - in.sure) * model_.unsure_rate;
+    const double rate = in.sure * model_.sure_rate + (1 - in.sure) * model_.unsure_rate;
     sum += in.inside * std::log(1 - rate + rate * ratio);
+    for (int k = 0; k < kRates; ++k) {
+      const double share = (k + 0.5) / kRates;
+      blind_sum[k] += in.inside * std::log(1 - share + share * ratio);
+    }
   }
-  return sum;
+  if (!blind) return sum;
+  const double most = *std::max_element(blind_sum.begin(), blind_sum.end());
+  double mean = 0;
+  for (const double s : blind_sum) mean += std::exp(s - most) / kRates;
+  return most + std::log(mean);
 }
 
 }  // namespace sketchsplat

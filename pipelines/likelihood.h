@@ -20,19 +20,25 @@ struct EvidenceModel {
   double least_width_sigma = 0.05;  ///< of the logarithm of the width of sharp edges
 };
 
+/// Standard deviation [px] of the distances of edgels from the strokes that many views see, with
+/// all that cameras err; 0 if there is no such stroke. From the median: edgels of others do not
+/// matter.
+double scatter_px(const EdgeWorld& world, const Observation& every);
+
 /// Judges the strokes of a sketch by the edgels of all views.
 class StrokeJudge {
  public:
-  /// `every`: the sketch, observed without exclusion and with min_run 0, within `reach_px`. `sigma_px`:
-  /// standard deviation of edgels in this scene. All must outlive the judge.
+  /// `every`: the sketch, observed without exclusion and with min_run 0, within `reach_px`.
+  /// `sigma_px`: standard deviation of edgels in this scene. All must outlive the judge.
   StrokeJudge(const EdgeWorld& world, const Observation& every, double reach_px, double sigma_px,
               const EvidenceModel& model);
 
   /// Logarithm of the likelihood ratio [nat] of an edge at the stroke's place and of none: the sum
-  /// over the views of log(1 - p + p r), p the rate at which the view shows an edge that is there, r
-  /// the mean over the stroke's places of what is found there: normal against uniform distances of
-  /// an edgel, times how likely it is as wide as sharp edges here are, `miss` where there is none, 1 where the edgel is `others`' (per view and edgel; may
-  /// be null). Places within a view are no independent witnesses, views are.
+  /// over the views of log(1 - p + p r), p the rate at which the view shows an edge that is there,
+  /// r the mean over the stroke's places of what is found there: normal against uniform distances
+  /// of an edgel, times how likely it is as wide as sharp edges here are, `miss` where there is
+  /// none, 1 where the edgel is `others`' (per view and edgel; may be null). Places within a view
+  /// are no independent witnesses, views are.
   double nats(int stroke, const EdgelFlags* others) const;
 
  private:

@@ -67,7 +67,8 @@ std::string manual_page(const std::vector<Verb>& verbs, const std::vector<Field>
   text +=
       ".SH EXIT STATUS\n"
       "0 done; 2 wrong usage; 3 the input cannot be used; 4 too little in the scene; 5 the output\n"
-      "cannot be written; 6 a batch of which some scenes failed; 1 a defect of the program.\n"
+      "cannot be written; 6 a batch of which some scenes failed; 7 inspected and not\n"
+      "all in; 1 a defect of the program.\n"
       ".SH ENVIRONMENT\n"
       ".TP\n.B NO_COLOR\nIf set, warnings and errors on a terminal have no colour.\n"
       ".TP\n.B OMP_NUM_THREADS\nThreads to use if \\-\\-threads is left out.\n";

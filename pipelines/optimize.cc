@@ -132,7 +132,7 @@ OptimizeResult optimize(const Sketch& sketch, const EdgeWorld& world,
   Eigen::VectorXd rate = Eigen::VectorXd::Constant(x.size(), options.step_px * world.footprint);
   rate.tail(2 * strokes).setConstant(0.05);
   Adam adam;
-  for (int step = 0; step < options.steps; ++step) {
+  for (int step = 0; step < options.steps && !options.deadline.passed(); ++step) {
     DrawingGradient g;
     const double loss = edge_loss(drawing, o.layout, visibility, world.views, targets, &g);
     if (step == 0) result.initial_loss = loss;

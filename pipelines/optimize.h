@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "edges/lift.h"
+#include "pipelines/deadline.h"
 #include "pipelines/observe.h"
 #include "raster/loss.h"
 #include "raster/splats.h"
@@ -23,6 +24,7 @@ struct OptimizeOptions {
   double sigma_px = 1.0;    ///< [px] width of the edges in the edge maps
   bool visibility = true;   ///< draw nothing where a stroke is hidden
   int gap = 4;              ///< samples: see sample_visibility
+  Deadline deadline;        ///< no step after it
 };
 
 /// The edge maps that renderings are compared with, one per view; none if there are no steps.

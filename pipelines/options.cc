@@ -2,6 +2,9 @@
 #include "pipelines/options.h"
 
 #include <cmath>
+#include <sstream>
+
+#include "pipelines/scale_reference.h"
 
 namespace sketchsplat {
 namespace {
@@ -34,7 +37,7 @@ const std::vector<Preset>& presets() {
 }
 
 void list_lift(LiftOptions* o, Fields* f) {
-  f->group("Lifting to space");
+  f->group("Lifting to space", true);
   f->add("lift-stride", &o->stride_px, "px", 0.5, 100, "Distance of edgels that are lifted");
   f->add("lift-views", &o->sweep_views, "views", 2, 10000, "Views that vote on a depth");
   f->add("lift-match", &o->match_px, "px", 0.1, 20, "Largest distance of an edgel that votes");
@@ -44,7 +47,7 @@ void list_lift(LiftOptions* o, Fields* f) {
 }
 
 void list_link(LinkOptions* o, Fields* f) {
-  f->group("Linking to curves");
+  f->group("Linking to curves", true);
   f->add("link-merge", &o->merge_px, "px", 0, 100, "Points nearer along a curve become one");
   f->add("link-aside", &o->aside_px, "px", 0.1, 100, "Largest offset across a curve");
   f->add("link-reach", &o->reach_px, "px", 1, 1000, "Longest step from point to point");
@@ -52,14 +55,14 @@ void list_link(LinkOptions* o, Fields* f) {
 }
 
 void list_segment(SegmentOptions* o, Fields* f) {
-  f->group("Cutting into curves");
+  f->group("Cutting into curves", true);
   f->add("segment-sigma", &o->sigma, "px", 0.02, 20, "Standard deviation of lifted points");
   f->add("price", &o->price, "nat", 0, 100, "Of a parameter, when curves are chosen");
   f->add("segment-corner", &o->corner_deg, "deg", 1, 180, "Turn that ends a curve");
 }
 
 void list_select(SelectOptions* o, Fields* f) {
-  f->group("Choosing strokes");
+  f->group("Choosing strokes", true);
   f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
   f->add("min-nats", &o->least_nats, "nat", -1000, 1000,
          "Logarithm of the likelihood ratio of an edge and of none that a stroke needs");
@@ -67,7 +70,7 @@ void list_select(SelectOptions* o, Fields* f) {
 }
 
 void list_extent(ExtentOptions* o, Fields* f) {
-  f->group("Ends of strokes");
+  f->group("Ends of strokes", true);
   f->add("extend", &o->outward_px, "px", 0, 1000, "How far beyond a free end is looked");
   f->add("extend-share", &o->share, "", 0.05, 1, "Share of the views that must go on seeing it");
   f->add("gap-price", &o->gap_price, "times", 0, 100,
@@ -75,7 +78,7 @@ void list_extent(ExtentOptions* o, Fields* f) {
 }
 
 void list_optimize(OptimizeOptions* o, Fields* f) {
-  f->group("Drawing and moving");
+  f->group("Drawing and moving", true);
   f->add("steps", &o->steps, "per round", 0, 100000, "Gradient steps on the rendered edges");
   f->add("step-length", &o->step_px, "px", 1e-4, 10, "Length of the first steps");
   f->add("splat-spacing", &o->spacing_px, "px", 0.25, 50, "Distance of the Gaussians on a stroke");
@@ -84,14 +87,14 @@ void list_optimize(OptimizeOptions* o, Fields* f) {
 }
 
 void list_topology(TopologyOptions* o, Fields* f) {
-  f->group("Simplifying the graph");
+  f->group("Simplifying the graph", true);
   f->add("merge-ends", &o->endpoint_px, "px", 0, 100, "Ends that may become one");
   f->add("merge-gap", &o->gap_px, "px", 0, 1000, "Gap between pieces of one curve");
   f->add("merge-offset", &o->offset_px, "px", 0, 100, "Offset between pieces of one curve");
 }
 
 void list_polish(PolishOptions* o, Fields* f) {
-  f->group("Least squares on edgels");
+  f->group("Least squares on edgels", true);
   f->add("polish-rounds", &o->rounds, "rounds", 0, 1000, "Of matching and solving, at the most");
   f->add("polish-spacing", &o->spacing_px, "px", 0.25, 50, "Distance of samples on a stroke");
   f->add("polish-reach", &o->reach_px, "px", 0.1, 20, "Largest distance of an edgel at first");
@@ -101,7 +104,7 @@ void list_polish(PolishOptions* o, Fields* f) {
 }
 
 void list_detect(DetectOptions* o, Fields* f) {
-  f->group("Edges in the images");
+  f->group("Edges in the images", true);
   f->add("detect-sigma", &o->sigma_px, "px", 0.3, 5, "Smoothing of the gradient");
   f->add("detect-high", &o->high_sigma, "times the noise", 1, 100, "Gradient that starts an edge");
   f->add("detect-low", &o->low_sigma, "times the noise", 0.5, 100, "Gradient that continues it");
@@ -117,7 +120,7 @@ void list_detect(DetectOptions* o, Fields* f) {
 }
 
 void list_maps(MapOptions* o, Fields* f) {
-  f->group("Edge maps of others (--detector maps:NAME)");
+  f->group("Edge maps of others (--detector maps:NAME)", true);
   f->add("map-sigma", &o->sigma_px, "px", 0.3, 10, "Smoothing before the ridge is looked for");
   f->add("map-high", &o->high, "of strong ridges", 0, 1, "Ridge that starts an edge");
   f->add("map-low", &o->low, "of strong ridges", 0, 1, "Ridge that continues it");
@@ -125,7 +128,7 @@ void list_maps(MapOptions* o, Fields* f) {
 }
 
 void list_geometry(GeometryOptions* o, Fields* f) {
-  f->group("Edges of depth and normal maps (--detector geometry)");
+  f->group("Edges of depth and normal maps (--detector geometry)", true);
   f->add("geometry-sigma", &o->sigma_px, "px", 0.3, 5, "Smoothing of the gradients");
   f->add("geometry-jump", &o->jump_px, "pixel footprints", 0.1, 1000,
          "Step of depth between the planes of two sides that is an edge");
@@ -139,7 +142,7 @@ void list_geometry(GeometryOptions* o, Fields* f) {
 
 void list_surfels(DetectionOptions* all, Fields* f) {
   SurfelFieldOptions* o = &all->surfels;
-  f->group("Surfels fitted to the images (--detector 2dgs-sn)");
+  f->group("Surfels fitted to the images (--detector 2dgs-sn)", true);
   f->add("surfels", &o->surfels, "surfels", 10, 1e5, "At the start");
   f->add("surfels-most", &o->most_surfels, "surfels", 10, 1e5, "Ever");
   f->add("surfel-renderings", &o->renderings, "of a view", 0, 1e6, "Forward and backward, at most");
@@ -164,15 +167,15 @@ void list_surfels(DetectionOptions* all, Fields* f) {
   f->add("surfel-smooth-angle", &o->smooth_angle_deg, "deg", 1, 90, "Turn that neighbours keep");
   f->add("surfel-carving", &o->hull.sweeps, "sweeps", 0, 10000,
          "Of the first surface, where views disagree");
-  f->add("surfel-sights", &o->hull.sights, "", 0, 1,
-         "Share of the first surface's cells between planes that lines of sight to edges must cross "
-         "to empty them; 0 looks at none");
+  f->add(
+      "surfel-sights", &o->hull.sights, "", 0, 1,
+      "Share of the first surface's cells between planes that lines of sight to edges must cross "
+      "to empty them; 0 looks at none");
   f->add("surfel-moves", &o->moves.rounds, "rounds", 0, 1000,
          "Of surfels to planes on which views agree better, before each level");
   f->add("surfel-planes", &o->planes.fewest, "surfels", 0, 1e6,
          "That make a plane and are laid on it at the end; 0 looks for none");
-  f->add("surfel-cylinders", &o->cylinders.fewest, "surfels", 0, 1e6,
-         "The same of cylinders");
+  f->add("surfel-cylinders", &o->cylinders.fewest, "surfels", 0, 1e6, "The same of cylinders");
   f->add("surfel-mode", &o->mode_deg, "deg", 0, 90,
          "Turn of what is one surface at a pixel; 0 blends all surfels");
   f->add("surfel-shading-pull", &o->shading_pull, "", 0, 1,
@@ -181,14 +184,43 @@ void list_surfels(DetectionOptions* all, Fields* f) {
          "Edges of the image so near say where an edge is; 0 leaves it to the surfels");
 }
 
+// "auto", or six numbers with commas between.
+Eigen::AlignedBox3d parse_box(const std::string& text) {
+  if (text == "auto") return {};
+  double x[6];
+  char comma[6] = {};
+  std::istringstream in(text);
+  bool good = true;
+  for (int k = 0; k < 6 && good; ++k) {
+    good = bool(in >> x[k]) && std::isfinite(x[k]);
+    if (good && k < 5) good = in.get(comma[k]) && comma[k] == ',';
+  }
+  Eigen::AlignedBox3d box;
+  if (good) {
+    box.extend(Eigen::Vector3d(x[0], x[1], x[2]));
+    box.extend(Eigen::Vector3d(x[3], x[4], x[5]));
+  }
+  if (!good || !(in >> std::ws).eof() || !(box.sizes().minCoeff() > 0))
+    throw UsageError("--box: expected auto or two opposite corners as x0,y0,z0,x1,y1,z1, got '" +
+                     text + "'");
+  return box;
+}
+
+void list_region(ReconstructOptions* o, Fields* f) {
+  f->add("box", &o->box_text, "x0,y0,z0,x1,y1,z1|auto",
+         "What lies in this box is the object; auto: masks or the table tell")
+      .applied = [o] { o->box = parse_box(o->box_text); };
+  f->add("budget", &o->budget, "s", 0, 1e9,
+         "Stop refining then and report; 0: never");
+}
+
 }  // namespace
 
 void list_fields(DetectionOptions* o, Fields* f) {
   f->choose("detector", &o->detector, {"image", "geometry", "2dgs-sn", "maps:NAME"},
-            "Edges of the images, of depth/ and normal/, of surfels fitted to the images, or in "
-            "edge_NAME/");
-  f->add("normals", &o->normals, "DIR",
-         "Normals for --detector geometry, in the scene or anywhere");
+            "Edges of the images, of depth/ and normal/, of surfels, or in edge_NAME/");
+  f->add("normals", &o->normals, "DIR", "Normals for --detector geometry, in the scene or anywhere")
+      .expert = true;
   list_detect(&o->detect, f);
   list_maps(&o->maps, f);
   list_geometry(&o->geometry, f);
@@ -212,13 +244,16 @@ void list_fields(ReconstructOptions* o, Fields* f) {
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
   list_fields(static_cast<DetectionOptions*>(o), f);
-  f->group("Cameras");
   f->choose("refine-poses", &o->refine_poses, {"auto", "off", "on"},
-            "Move cameras together with the strokes: if they seem to err, never, always");
+            "Move cameras with the strokes: if they seem to err, never, always");
+  Field& like = f->add("like", &o->like, "SKETCH",
+                       "Results of siblings, parts of the same family: a start from what they have "
+                       "in common");
+  like.several = like.takes_more = true;
   list_lift(&o->lift, f);
   list_link(&o->link, f);
   list_segment(&o->segment, f);
-  f->group("Kinds of strokes");
+  f->group("Kinds of strokes", true);
   f->add("conics", &o->segment.conics,
          "Try arcs, circles and ellipses, not lines and cubics alone");
   f->add("rewrite", &o->rechain.on, "Describe chains of strokes anew, in the fewest words");
@@ -233,7 +268,7 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_optimize(&o->optimize, f);
   list_topology(&o->topology, f);
   list_polish(&o->polish, f);
-  f->group("Rounds");
+  f->group("Rounds", true);
   f->add("rounds", &o->rounds, "rounds", 0, 1000, "Of drawing and simplifying, at the most");
   f->add("simplify", &o->simplify, "Simplify the graph between the rounds");
   f->add("early-polish", &o->early_polish,
@@ -243,25 +278,34 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("close", &o->close.on, "Close gaps, loose ends and circles at last");
   f->add("regularize", &o->regularize.on,
          "Let strokes share directions, planes, axes and radii where that is simpler");
+  f->group("Output");
   f->add("min-confidence", &o->min_confidence, "", 0, 1, "Less probable strokes are left out");
+  list_region(o, f);
 }
 
 void list_fields(CadOptions* o, Fields* f) {
   f->group("Files for CAD programs");
-  f->choose("unit", &o->unit, length_unit_names(), "Unit of the lengths in the file");
-  f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit");
+  f->choose("unit", &o->unit, length_unit_names(), "Unit of the lengths in the file")
+      .applied = [o] { o->unit_given = true; };
+  f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit")
+      .applied = [o] { o->scale_given = true; };
+  f->add("scale-by", &o->scale_by, "WHAT=LENGTH|none",
+         "The same from a known length: tag, size, diameter, circle:N, line:N, nodes:N-M")
+      .applied = [o] { if (o->scale_by != "none") parse_scale_reference(o->scale_by); };
   f->add("faces", &o->faces, "Write closed planar loops as faces in STEP");
   f->add("face-tolerance", &o->face.tolerance, "of the extent", 1e-9, 0.1,
-         "Distance of a face's edges from its plane");
+         "Distance of a face's edges from its plane")
+      .expert = true;
 }
 
 void list_fields(OutputOptions* o, Fields* f) {
-  f->group("Output");
   f->add("overlays", &o->overlays, "views", 0, 100, "Views over which the curves are drawn");
   f->add("point-spacing", &o->point_spacing, "of the extent", 1e-5, 1,
-         "Distance of the samples in edge_points.ply");
+         "Distance of the samples in edge_points.ply")
+      .expert = true;
   f->add("reproducible", &o->reproducible,
-         "Leave times, memory and threads out of the reports: same input, same bytes");
+         "Leave times, memory and threads out of the reports: same input, same bytes")
+      .expert = true;
   list_fields(&o->cad, f);
 }
 

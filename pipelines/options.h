@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Geometry>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "edges/link.h"
 #include "edges/match.h"
 #include "pipelines/close_graph.h"
+#include "pipelines/deadline.h"
 #include "pipelines/detectors.h"
 #include "pipelines/extent.h"
 #include "pipelines/fields.h"
@@ -61,13 +63,21 @@ struct ReconstructOptions : DetectionOptions {
   double surfel_sigma_px = 0.25;
   /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
   double surfel_gap_price = 2;
+  std::string like;  ///< sketches of siblings, one a line; empty: none
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
+  std::string box_text = "auto";  ///< as the user gives it
+  Eigen::AlignedBox3d box;    ///< world units: only what is in it is the object; empty: found out
+  bool tags = false;          ///< measure AprilTags; what is on them is not the object
+  double budget = 0;          ///< [s] after which nothing is refined any more; 0: none
+  Deadline deadline;          ///< of this run: set by reconstruct()
 };
 
 /// What files for CAD programs say beside the curves.
 struct CadOptions {
   LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
   double scale = 1.0;                         ///< units per world unit
+  std::string scale_by = "none";  ///< what tells the scale instead, see known_scale.h
+  bool unit_given = false, scale_given = false;  ///< by the user
   bool faces = false;                         ///< closed planar loops as faces, in STEP
   PlanarFaceOptions face;
 };

@@ -3,14 +3,14 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "datasets/colmap_write.h"
 #include "datasets/errors.h"
 #include "pipelines/atomic_file.h"
+#include "pipelines/known_scale.h"
 #include "pipelines/overlay.h"
 #include "pipelines/report.h"
 #include "pipelines/version.h"
@@ -22,10 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
+constexpr double kObjDeflection = 1e-4;  // of the extent
 
 // The picture under an overlay; white if it cannot be read any more.
 Picture background(const View& view, RunReport* report, Progress* progress) {
@@ -37,18 +34,26 @@ Picture background(const View& view, RunReport* report, Progress* progress) {
   }
 }
 
-std::vector<ReportImage> write_overlays(const std::string& folder, const Sketch& sketch,
-                                        const Scene& scene, int count, RunReport* report,
-                                        Progress* progress) {
-  std::vector<ReportImage> images;
+// Returns how many.
+int write_overlays(const std::string& folder, const Sketch& sketch, const Scene& scene, int count,
+                   RunReport* report, Progress* progress) {
+  int written = 0;
   for (const int v : spread_views(scene.views, sketch_extent(sketch).center, count)) {
     const View& view = scene.views[v];
     const Picture overlay = draw_overlay(sketch, view, background(view, report, progress));
-    const std::string path = folder + "/overlay_" + fs::path(view.name).stem().string() + ".png";
-    write_png(path, overlay);
-    images.push_back({view.name, bytes_of(path)});
+    write_png(folder + "/overlay_" + fs::path(view.name).stem().string() + ".png", overlay);
+    ++written;
   }
-  return images;
+  return written;
+}
+
+// Where the views stand that the evidence counts.
+std::vector<Eigen::Vector3d> viewpoints(const Reconstruction& reconstruction, const Scene& scene) {
+  std::map<std::string, Eigen::Vector3d> center;
+  for (const View& view : scene.views) center[view.name] = view.center_in_world();
+  std::vector<Eigen::Vector3d> points;
+  for (const std::string& name : reconstruction.views) points.push_back(center[name]);
+  return points;
 }
 
 // Overlays of an earlier run show other views, perhaps; nobody should take them for today's.
@@ -97,13 +102,14 @@ Json json_of(const std::vector<Regularity>& regularities) {
 }
 
 void write_sketch(const std::string& folder, const Reconstruction& reconstruction,
-                  const Scene& scene, const std::string& options_json,
+                  const Scene& scene, const std::string& options_json, const KnownScale& scale,
                   const OutputOptions& options) {
   const Sketch& sketch = reconstruction.sketch;
   Json extra = {{"program", "sketchsplat"}, {"version", program_version()}};
   extra["options"] = Json::parse(options_json);
   extra["regularities"] = json_of(reconstruction.report.regularities);
   extra["views"] = reconstruction.views;
+  if (!scale.source.empty()) extra["scale"] = Json::parse(scale_json(scale));
   for (const auto& [name, value] : reconstruction.report.counts)
     if (name == "footprint") extra[name] = value;
   if (reconstruction.proposed.size() > 0) {
@@ -117,17 +123,39 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
                    [&](std::ostream& out) { write_sketch_json(out, sketch, members); });
   write_atomically(folder + "/parametric_edges.json",
                    [&](std::ostream& out) { write_parametric_edges(out, sketch); });
-  write_atomically(folder + "/sketch.obj", [&](std::ostream& out) { write_obj(out, sketch); });
+  const CadOptions cad = at_scale(options.cad, scale);
+  write_atomically(folder + "/sketch.obj",
+                   [&](std::ostream& out) { write_obj(out, sketch, kObjDeflection, cad.scale); });
   std::string name =
       fs::path(scene.folder + "/.").lexically_normal().parent_path().filename().string();
   if (name.empty()) name = "sketch";
-  const StepOptions step = step_options(sketch, name, options.cad);
+  const StepOptions step = step_options(sketch, name, cad);
   write_atomically(folder + "/sketch.step",
                    [&](std::ostream& out) { write_step(out, sketch, step); });
   const double size = sketch_extent(sketch).size;
   const double spacing = options.point_spacing * (size > 0 ? size : 1);
   write_atomically(folder + "/edge_points.ply",
                    [&](std::ostream& out) { write_edge_points(out, sketch, spacing); });
+}
+
+// What was asked for and cannot be had is a warning: the curves are worth something without.
+KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& options,
+                    RunReport* report, Progress* progress) {
+  double footprint = 0;
+  for (const auto& [name, value] : reconstruction.report.counts)
+    if (name == "footprint") footprint = value;
+  // As its file counts curves and nodes.
+  std::stringstream file;
+  write_sketch_json(file, reconstruction.sketch);
+  const Sketch sketch = read_sketch_json(file, "sketch.json");
+  try {
+    return known_scale(options, sketch, footprint, reconstruction.tags);
+  } catch (const InputError& e) {
+    warn(std::string(e.what()) + ": all lengths stay in world units", report, progress);
+    KnownScale none;
+    none.unit = options.unit;
+    return none;
+  }
 }
 
 }  // namespace
@@ -141,9 +169,9 @@ StepOptions step_options(const Sketch& sketch, const std::string& name, const Ca
   return step;
 }
 
-void write_outputs(const std::string& folder, Reconstruction reconstruction, const Scene& scene,
-                   ReconstructOptions reconstruct_options, OutputOptions output_options,
-                   Progress* progress) {
+KnownScale write_outputs(const std::string& folder, Reconstruction reconstruction,
+                         const Scene& scene, ReconstructOptions reconstruct_options,
+                         OutputOptions output_options, Progress* progress) {
   // sketch.json holds what decides the sketch; the report all options.
   Fields method;
   method.add("seed", &reconstruct_options.seed, "", 0, HUGE_VAL, "");
@@ -151,23 +179,29 @@ void write_outputs(const std::string& folder, Reconstruction reconstruction, con
   Fields all = method;
   list_fields(&output_options, &all);
   const Sketch& sketch = reconstruction.sketch;
-  std::vector<ReportImage> overlays;
+  ReportPage page = {&sketch};
+  KnownScale scale;
   {
     Stage stage("write", 0, &reconstruction.report, progress);
-    write_sketch(folder, reconstruction, scene, fields_json(method.list), output_options);
+    scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
+    write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
     write_cameras(folder + "/cameras", reconstruction.refined);
     remove_old_overlays(folder);
     Scene seen = scene;
     if (!reconstruction.refined.empty()) seen.views = reconstruction.refined;
-    overlays = write_overlays(folder, sketch, seen, output_options.overlays,
-                              &reconstruction.report, progress);
-    stage.result(std::to_string(overlays.size()) + " overlays");
+    const int overlays = write_overlays(folder, sketch, seen, output_options.overlays,
+                                        &reconstruction.report, progress);
+    page.viewpoints = viewpoints(reconstruction, seen);
+    if (overlays > 0) page.photos = page_photos(seen, sketch_extent(sketch).center);
+    stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +
+                 " photographs");
   }
   const std::string report = report_json(
-      {&reconstruction, &scene, fields_json(all.list), output_options.reproducible});
+      {&reconstruction, &scene, fields_json(all.list), output_options.reproducible, &scale});
   write_atomically(folder + "/report.json", [&](std::ostream& out) { out << report; });
   write_atomically(folder + "/report.html",
-                   [&](std::ostream& out) { out << report_html(report, sketch, overlays); });
+                   [&](std::ostream& out) { out << report_html(report, page); });
+  return scale;
 }
 
 }  // namespace sketchsplat

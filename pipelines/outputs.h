@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "pipelines/known_scale.h"
 #include "pipelines/options.h"
 #include "pipelines/reconstruct.h"
 #include "sketches/io.h"
@@ -10,11 +11,13 @@
 namespace sketchsplat {
 
 /// Writes everything that `reconstruct` promises into the folder: sketch.json,
-/// parametric_edges.json, sketch.obj, cameras/ (if they were refined), sketch.step, edge_points.ply, overlay_<view>.png, report.json
-/// and report.html. The time that this takes becomes a stage of the report. Throws OutputError.
-void write_outputs(const std::string& folder, Reconstruction reconstruction, const Scene& scene,
-                   ReconstructOptions reconstruct_options, OutputOptions output_options,
-                   Progress* progress);
+/// parametric_edges.json, sketch.obj, cameras/ (if they were refined), sketch.step,
+/// edge_points.ply, overlay_<view>.png, report.json and report.html. The time that this takes
+/// becomes a stage of the report. sketch.obj and sketch.step are at the scale that is returned, the
+/// others in world units. Throws OutputError.
+KnownScale write_outputs(const std::string& folder, Reconstruction reconstruction,
+                         const Scene& scene, ReconstructOptions reconstruct_options,
+                         OutputOptions output_options, Progress* progress);
 
 /// What write_step is to be told for this sketch.
 StepOptions step_options(const Sketch& sketch, const std::string& name, const CadOptions& options);

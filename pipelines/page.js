@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What pages share.
 const $ = id => document.getElementById(id);
 function add(parent, tag, text, cls) {
@@ -6,132 +7,136 @@ function add(parent, tag, text, cls) {
   if (cls) e.className = cls;
   return parent.appendChild(e);
 }
-const show = x => typeof x !== 'number' ? String(x) :
-    Number.isInteger(x)                 ? String(x) :
-                                          String(+x.toPrecision(4));
+const show = x => typeof x !== 'number' ? String(x) : Number.isInteger(x) ? String(x) : String(+x.toPrecision(4));
+const rgb = c => `rgb(${c.map(x => Math.round(255 * x)).join(',')})`;
 
-// A 3D view of polylines: every chord is a quad of constant width on the screen.
+// A 3D view of polylines, drawn on a plain canvas: what browsers without a graphics card have, too.
 // items: [{points: [x, y, z, ...]}], the object in [-0.5, 0.5], z up. look(item, id, chord) is the
-// colour [r, g, b] of a chord in [0, 1], or null if it is not shown; picked(id) is called at a
-// click on an item. Without WebGL2 there is nothing to see (ok: false).
+// colour [r, g, b] of a chord in [0, 1], or null if it is not shown; picked(id, point) is called at
+// a click on an item (point: of the curve), picked(-1) beside all of them.
 function makeViewer(canvas, items, look, picked) {
-  const yaw0 = -0.9, pitch0 = 0.5;
-  let marked = -1, yaw = yaw0, pitch = pitch0, distance = 2.6, pan = [0, 0], queued = false;
-  let program, count = 0, segments = [];
-  const gl = canvas.getContext('webgl2', {antialias: true, premultipliedAlpha: false});
-  if (!gl) return {ok: false, upload() {}, mark() {}};
-  function upload() {
-    segments = [];
-    const flat = [];
-    items.forEach((item, id) => {
-      const p = item.points;
-      for (let i = 0; i + 5 < p.length; i += 3) {
-        const rgb = look(item, id, i / 3);
-        if (!rgb) continue;
-        flat.push(p[i], p[i + 1], p[i + 2], p[i + 3], p[i + 4], p[i + 5], ...rgb, id);
-        segments.push([id, p.slice(i, i + 3), p.slice(i + 3, i + 6)]);
+  const START = {yaw: -0.9, pitch: 0.5, distance: 2.3, target: [0, 0, 0]};
+  const FOCAL = 2.4, NEAR = 1e-3;
+  let camera = structuredClone(START), marked = -1, orthographic = false, queued = false;
+  let dashed = () => false;  // (id, direction towards the viewer)
+  let marks = [];            // points to show, the last two with a line between them
+  const context = canvas.getContext('2d');
+
+  // The viewer's axes: right, up, towards the viewer.
+  function axes() {
+    const cy = Math.cos(camera.yaw), sy = Math.sin(camera.yaw), cp = Math.cos(camera.pitch), sp = Math.sin(camera.pitch);
+    return [[-sy, cy, 0], [-sp * cy, -sp * sy, cp], [cp * cy, cp * sy, sp]];
+  }
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  // To [x, y, depth] in the viewer's frame, and from there to the canvas [CSS px].
+  function eye(frame, p) {
+    const q = [p[0] - camera.target[0], p[1] - camera.target[1], p[2] - camera.target[2]];
+    return [dot(frame[0], q), dot(frame[1], q), camera.distance - dot(frame[2], q)];
+  }
+  function place(e) {
+    const w = canvas.clientWidth, h = canvas.clientHeight, s = FOCAL / 2 * Math.min(w, h) / (orthographic ? camera.distance : e[2]);
+    return [w / 2 + s * e[0], h / 2 - s * e[1]];
+  }
+  function clipped(a, b) {  // the part of a chord before the viewer, as two places; null if there is none
+    if (!orthographic) {
+      if (a[2] < NEAR && b[2] < NEAR) return null;
+      const cut = (p, q) => p.map((v, i) => v + (q[i] - v) * (NEAR - p[2]) / (q[2] - p[2]));
+      if (a[2] < NEAR) a = cut(a, b); else if (b[2] < NEAR) b = cut(b, a);
+    }
+    return [place(a), place(b)];
+  }
+  function eyes(frame, item) {
+    const out = [];
+    for (let i = 0; i + 2 < item.points.length; i += 3) out.push(eye(frame, item.points.slice(i, i + 3)));
+    return out;
+  }
+  function drawItem(item, id, points, frame) {
+    context.lineWidth = id === marked ? 4.5 : 2;
+    context.setLineDash(dashed(id, frame[2]) ? [5, 5] : []);
+    let color = null, last = null;
+    for (let i = 0; i + 1 < points.length; ++i) {
+      const wanted = look(item, id, i), chord = wanted && clipped(points[i], points[i + 1]);
+      if (!chord) { last = null; continue; }
+      const name = id === marked ? 'rgb(234,179,8)' : rgb(wanted);
+      if (name !== color || !last || last[0] !== chord[0][0] || last[1] !== chord[0][1]) {
+        if (name !== color && color !== null) { context.stroke(); context.beginPath(); }
+        context.strokeStyle = color = name;
+        context.moveTo(...chord[0]);
       }
-    });
-    count = segments.length;
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(flat), gl.STATIC_DRAW);
-    redraw();
+      context.lineTo(...chord[1]);
+      last = chord[1];
+    }
+    if (color !== null) context.stroke();
+    context.beginPath();
   }
-  function camera() {  // world -> clip, column-major
-    const cy = Math.cos(yaw), sy = Math.sin(yaw), cp = Math.cos(pitch), sp = Math.sin(pitch);
-    const x = [-sy, cy, 0], z = [cp * cy, cp * sy, sp], y = [-sp * cy, -sp * sy, cp];
-    const f = 2.4, a = canvas.width / canvas.height, sx = f / Math.max(a, 1e-3) * Math.min(1, a),
-          s = f * Math.min(1, a);
-    const near = distance * 0.02, far = distance + 10, A = -(far + near) / (far - near),
-          B = -2 * far * near / (far - near);
-    const m = [];
-    for (let i = 0; i < 3; ++i) m.push(sx * x[i], s * y[i], A * z[i], -z[i]);
-    return [...m, sx * pan[0], s * pan[1], -A * distance + B, distance];
+  function drawMarks(frame) {
+    context.setLineDash([]);
+    context.strokeStyle = context.fillStyle = 'rgb(220,38,38)';
+    context.lineWidth = 1.5;
+    const places = marks.map(p => place(eye(frame, p)));
+    if (places.length === 2) { context.beginPath(); context.moveTo(...places[0]); context.lineTo(...places[1]); context.stroke(); }
+    for (const p of places) { context.beginPath(); context.arc(p[0], p[1], 4, 0, 7); context.fill(); }
   }
-  const clip =
-      (m, p) => [0, 1, 2, 3].map(r => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
   function draw() {
     queued = false;
-    const ratio = devicePixelRatio || 1, w = Math.round(canvas.clientWidth * ratio),
-          h = Math.round(canvas.clientHeight * ratio);
-    if (canvas.width !== w || canvas.height !== h) {
-      canvas.width = w;
-      canvas.height = h;
-    }
-    gl.viewport(0, 0, w, h);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const u = name => gl.getUniformLocation(program, name);
-    gl.uniformMatrix4fv(u('m'), false, camera());
-    gl.uniform2f(u('size'), w, h);
-    gl.uniform1f(u('width'), 2.4 * ratio);
-    gl.uniform1f(u('selected'), marked);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+    const ratio = devicePixelRatio || 1, w = Math.round(canvas.clientWidth * ratio), h = Math.round(canvas.clientHeight * ratio);
+    if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, w, h);
+    context.lineCap = context.lineJoin = 'round';
+    context.beginPath();
+    const frame = axes();
+    const order = items.map((item, id) => {
+      const points = eyes(frame, item);
+      return {item, id, points, depth: points.reduce((sum, p) => sum + p[2], 0) / (points.length || 1)};
+    });
+    order.sort((a, b) => (a.id === marked) - (b.id === marked) || b.depth - a.depth || a.id - b.id);
+    for (const {item, id, points} of order) drawItem(item, id, points, frame);
+    drawMarks(frame);
   }
   function redraw() {
-    if (!queued) {
-      queued = true;
-      requestAnimationFrame(draw);
-    }
+    if (!queued) { queued = true; requestAnimationFrame(draw); }
   }
+
+  // The item within 8 px, and the point of it.
   function at(px, py) {
-    const m = camera(), w = canvas.clientWidth, h = canvas.clientHeight;
-    const place = p => {
-      const c = clip(m, p);
-      return [(c[0] / c[3] + 1) * w / 2, (1 - c[1] / c[3]) * h / 2];
-    };
-    let best = 8, id = -1;
-    for (const [item, p, q] of segments) {
-      const a = place(p), b = place(q), dx = b[0] - a[0], dy = b[1] - a[1];
-      const t = Math.max(
-          0, Math.min(1, ((px - a[0]) * dx + (py - a[1]) * dy) / (dx * dx + dy * dy || 1)));
-      const d = Math.hypot(a[0] + t * dx - px, a[1] + t * dy - py);
-      if (d < best) {
+    const frame = axes();
+    let best = 8, found = {id: -1, point: null};
+    items.forEach((item, id) => {
+      const points = eyes(frame, item);
+      for (let i = 0; i + 1 < points.length; ++i) {
+        const chord = look(item, id, i) && clipped(points[i], points[i + 1]);
+        if (!chord) continue;
+        const [a, b] = chord, dx = b[0] - a[0], dy = b[1] - a[1];
+        const t = Math.max(0, Math.min(1, ((px - a[0]) * dx + (py - a[1]) * dy) / (dx * dx + dy * dy || 1)));
+        const d = Math.hypot(a[0] + t * dx - px, a[1] + t * dy - py);
+        if (d >= best) continue;
         best = d;
-        id = item;
+        // ends are what people mean near an end; else the share of the chord as it is seen
+        const near = Math.hypot(dx, dy) * Math.min(t, 1 - t) < 6 ? Math.round(t) : t;
+        const p = item.points.slice(3 * i, 3 * i + 3), q = item.points.slice(3 * i + 3, 3 * i + 6);
+        const za = orthographic ? 1 : points[i][2], zb = orthographic ? 1 : points[i + 1][2];
+        const s = near * za / (zb + near * (za - zb) || 1);  // perspective
+        found = {id, point: p.map((v, k) => v + (q[k] - v) * s)};
       }
-    }
-    return id;
+    });
+    return found;
   }
-  const shader = (type, text) => {
-    const s = gl.createShader(type);
-    gl.shaderSource(s, text);
-    gl.compileShader(s);
-    return s;
-  };
-  program = gl.createProgram();
-  gl.attachShader(program, shader(gl.VERTEX_SHADER, `#version 300 es
-    in vec3 a, b, rgb; in float id; uniform mat4 m; uniform vec2 size; uniform float width, selected; out vec3 c;
-    void main() {
-      vec4 p = m * vec4(a, 1.), q = m * vec4(b, 1.);
-      float near = 1e-4;  // cut at the camera's plane
-      if (p.w < near && q.w < near) { gl_Position = vec4(2., 2., 2., 1.); return; }
-      if (p.w < near) p = mix(p, q, (near - p.w) / (q.w - p.w)); else if (q.w < near) q = mix(q, p, (near - q.w) / (p.w - q.w));
-      vec2 d = (q.xy / q.w - p.xy / p.w) * size; float l = length(d); d = l > 1e-6 ? d / l : vec2(1., 0.);
-      bool on = id == selected; float w = on ? width * 2.2 : width;
-      vec4 e = (gl_VertexID & 1) == 0 ? p : q;
-      vec2 o = vec2(-d.y, d.x) * ((gl_VertexID & 2) == 0 ? -1. : 1.) + d * ((gl_VertexID & 1) == 0 ? -.5 : .5);
-      e.xy += o * w / size * e.w;
-      if (on) e.z -= .01 * e.w;
-      gl_Position = e; c = on ? vec3(.92, .70, .03) : rgb;
-    }`));
-  gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `#version 300 es
-    precision mediump float; in vec3 c; out vec4 o; void main() { o = vec4(c, 1.); }`));
-  gl.linkProgram(program);
-  gl.useProgram(program);
-  gl.enable(gl.DEPTH_TEST);
-  gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-  [['a', 3, 0], ['b', 3, 12], ['rgb', 3, 24], ['id', 1, 36]].forEach(([name, n, offset]) => {
-    const place = gl.getAttribLocation(program, name);
-    gl.enableVertexAttribArray(place);
-    gl.vertexAttribPointer(place, n, gl.FLOAT, false, 40, offset);
-    gl.vertexAttribDivisor(place, 1);
-  });
-  const fingers = new Map();
-  let moved = 0;
-  const zoom = k => {
-    distance = Math.max(0.05, Math.min(20, distance * k));
+
+  const turn = (dx, dy) => {
+    camera.yaw -= dx;
+    camera.pitch = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, camera.pitch + dy));
     redraw();
   };
+  const move = (dx, dy) => {  // [CSS px]
+    const frame = axes(), s = camera.distance / (FOCAL / 2 * Math.min(canvas.clientWidth, canvas.clientHeight) || 1);
+    camera.target = camera.target.map((v, k) => v - s * (dx * frame[0][k] - dy * frame[1][k]));
+    redraw();
+  };
+  const zoom = k => { camera.distance = Math.max(0.01, Math.min(20, camera.distance * k)); redraw(); };
+  const fingers = new Map();
+  let moved = 0;
+  canvas.tabIndex = 0;
   canvas.oncontextmenu = e => e.preventDefault();
   canvas.onpointerdown = e => {
     canvas.setPointerCapture(e.pointerId);
@@ -140,10 +145,9 @@ function makeViewer(canvas, items, look, picked) {
   };
   canvas.onpointerup = canvas.onpointercancel = e => {
     fingers.delete(e.pointerId);
-    if (e.type === 'pointerup' && moved < 4 && e.button === 0) {
-      const id = at(e.offsetX, e.offsetY);
-      if (id !== marked) picked(id);
-    }
+    if (e.type !== 'pointerup' || moved >= 4 || e.button !== 0) return;
+    const {id, point} = at(e.offsetX, e.offsetY);
+    picked(id, point);
   };
   canvas.onpointermove = e => {
     const last = fingers.get(e.pointerId);
@@ -152,38 +156,54 @@ function makeViewer(canvas, items, look, picked) {
     moved += Math.hypot(dx, dy);
     if (fingers.size === 2) {
       const other = [...fingers].find(([id]) => id !== e.pointerId)[1];
-      zoom(
-          Math.hypot(last[0] - other[0], last[1] - other[1]) /
-          Math.max(1, Math.hypot(e.offsetX - other[0], e.offsetY - other[1])));
-    } else if (e.shiftKey || e.buttons & 2) {
-      const s = distance / 2.4 * 2 / Math.min(canvas.clientWidth, canvas.clientHeight);
-      pan = [pan[0] + dx * s, pan[1] - dy * s];
-    } else {
-      yaw -= dx * 0.008;
-      pitch = Math.max(-1.57, Math.min(1.57, pitch + dy * 0.008));
-    }
+      zoom(Math.hypot(last[0] - other[0], last[1] - other[1]) / Math.max(1, Math.hypot(e.offsetX - other[0], e.offsetY - other[1])));
+    } else if (e.shiftKey || e.buttons & 2) move(dx, dy);
+    else turn(dx * 0.008, dy * 0.008);
     fingers.set(e.pointerId, [e.offsetX, e.offsetY]);
-    redraw();
   };
   canvas.addEventListener('wheel', e => {
     e.preventDefault();
     zoom(Math.exp(Math.max(-60, Math.min(60, e.deltaY)) * 0.003));
   }, {passive: false});
-  canvas.ondblclick = () => {
-    [yaw, pitch, distance, pan] = [yaw0, pitch0, 2.6, [0, 0]];
-    redraw();
+  canvas.ondblclick = e => {
+    const {id} = at(e.offsetX, e.offsetY);
+    id < 0 ? viewer.reset() : viewer.focus(id);
   };
+  canvas.addEventListener('keydown', e => {
+    const steps = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[e.key];
+    if (steps) e.shiftKey ? move(-30 * steps[0], -30 * steps[1]) : turn(-0.1 * steps[0], -0.1 * steps[1]);
+    else if (e.key === '+' || e.key === '=') zoom(0.85);
+    else if (e.key === '-') zoom(1 / 0.85);
+    else return;
+    e.preventDefault();
+  });
   new ResizeObserver(redraw).observe(canvas);
-  upload();
-  return {
-    ok: true,
-    upload,
-    mark(id) {
-      marked = id;
+
+  const viewer = {
+    ok: Boolean(context),
+    upload: redraw,
+    draw,
+    mark(id) { marked = id; redraw(); },
+    marks(points) { marks = points; redraw(); },
+    orthographic(on) { orthographic = on; redraw(); },
+    dash(rule) { dashed = rule; redraw(); },
+    reset() { camera = structuredClone(START); redraw(); },
+    look(yaw, pitch) { Object.assign(camera, {yaw, pitch}); redraw(); },
+    // Turns about this item, which fills a good part of the view.
+    focus(id) {
+      const p = items[id].points, low = [1e9, 1e9, 1e9], high = [-1e9, -1e9, -1e9];
+      if (!p.length) return;
+      p.forEach((v, i) => { low[i % 3] = Math.min(low[i % 3], v); high[i % 3] = Math.max(high[i % 3], v); });
+      camera.target = low.map((v, k) => (v + high[k]) / 2);
+      camera.distance = Math.max(0.05, 3 * Math.hypot(...low.map((v, k) => high[k] - v)));
       redraw();
-    }
+    },
+    // Where a point is on the canvas [CSS px].
+    place: p => place(eye(axes(), p)),
   };
+  redraw();
+  return viewer;
 }
 const viewerHelp = ok => ok ?
-    'drag: turn, shift or right drag: move, wheel: zoom, click: pick, double click: reset' :
-    'This browser has no WebGL2, so there is no 3D view.';
+    'drag or arrows: turn, shift or right drag: move, wheel or + -: zoom, click: pick, double click: zoom to a curve, or reset' :
+    'This browser draws on no canvas, so there is no 3D view.';

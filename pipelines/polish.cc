@@ -14,6 +14,7 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
   Sketch s = sketch;
   double sigma = 0;
   for (int round = 0; round < options.rounds && s.size() > 0; ++round) {
+    if (round > 0 && options.deadline.passed()) break;
     MatchOptions match;
     match.exclusive = match.exclusive_between = options.exclusive;
     const bool coarse = round < std::min(2, options.rounds / 2);

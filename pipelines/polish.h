@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "pipelines/deadline.h"
 #include "pipelines/observe.h"
 #include "sketches/sketch.h"
 
@@ -17,11 +18,12 @@ struct PolishOptions {
   double smooth_sigma_deg =
       0.2;                 ///< [deg] standard deviation of what is left between their tangents
   double stop_px = 0.002;  ///< [px] no sample moved farther: done
+  Deadline deadline;       ///< no second round after it
 };
 
 /// Moves the strokes onto the edgels of all views: match, then least squares with a robust weight
-/// (iteratively reweighted biweight), again and again until nothing moves. `last`, if given, becomes
-/// what was matched before the last move; it stays as it is if there is no round.
+/// (iteratively reweighted biweight), again and again until nothing moves. `last`, if given,
+/// becomes what was matched before the last move; it stays as it is if there is no round.
 Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options,
               Observation* last = nullptr);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/progress.h"
 
+#include <omp.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -59,17 +60,25 @@ void Progress::begin(const std::string& stage, int total) {
   share_ = -1;
   began_ = drawn_ = Clock::now();
   if (mode_ == Mode::kBar) draw();
+  ask_watcher();
+  if (cancelled_) throw CancelledError();
 }
 
 void Progress::step() {
   ++count_;
-  if (mode_ != Mode::kBar) return;
+  if (cancelled_ && omp_get_level() == 0) throw CancelledError();
+  if (mode_ != Mode::kBar && !watcher_) return;
   std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;  // somebody else is drawing
   const Clock::time_point now = Clock::now();
   if (now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
-  draw();
+  if (mode_ == Mode::kBar) draw();
+  ask_watcher();
+}
+
+void Progress::ask_watcher() {
+  if (watcher_ && !watcher_(stage_, count_, total_)) cancelled_ = true;
 }
 
 void Progress::end(const std::string& result) {

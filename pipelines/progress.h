@@ -4,11 +4,18 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace sketchsplat {
+
+/// Whoever watches a Progress wants no more.
+struct CancelledError : std::runtime_error {
+  CancelledError() : std::runtime_error("cancelled") {}
+};
 
 /// Says on stderr how far the work is: a bar on a terminal, else one line per finished stage.
 /// step() may be called from several threads.
@@ -29,6 +36,12 @@ class Progress {
   /// A line for the log alone.
   void log(const std::string& text);
 
+  /// Called with a stage, how many of its steps are done, and how many there are: when a stage
+  /// begins, and now and then in it; from any thread, never from two at once. If it returns false,
+  /// begin() or step(), outside of parallel regions, throws CancelledError.
+  using Watcher = std::function<bool(const std::string& stage, int done, int total)>;
+  void watch(Watcher watcher) { watcher_ = std::move(watcher); }
+
   /// `total` is the number of step()s that will come; 0 if nobody knows.
   void begin(const std::string& stage, int total);
   void step();
@@ -48,6 +61,7 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   void draw();
+  void ask_watcher();
   void clear_bar();
   void say(const std::string& line, bool warning = false);
   std::string time_left(int count) const;
@@ -63,6 +77,8 @@ class Progress {
   std::vector<std::string> warnings_;
   bool said_since_ = false;  // something that is no warning
   std::ofstream log_;
+  Watcher watcher_;
+  std::atomic<bool> cancelled_{false};
   std::mutex mutex_;
 };
 

@@ -1,45 +1,98 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/reconstruct.h"
 
+#include <cstdio>
 #include <memory>
 
 #include "datasets/errors.h"
 #include "pipelines/detectors.h"
+#include "pipelines/family_start.h"
 #include "pipelines/refine_poses.h"
+#include "pipelines/scene_tags.h"
 #include "pipelines/stages.h"
 
 namespace sketchsplat {
 
-// The method. Images become edgels, edgels points in space, points strokes, and these
-// tell whether the cameras err; then rounds of drawing
-// the strokes into the views, moving them and simplifying the graph, until nothing changes; and the
-// same once more with what is found in the edgels that are left.
-Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
-                           Progress* progress) {
-  RunReport report;
-  report.warnings = scene.warnings;
+namespace {
 
-  const std::unique_ptr<Detector> detector = make_detector(options);
-  const EdgeWorld all = detect_scene(scene, detector.get(), options, &report, progress);
-  const PosedStrokes posed = pose_and_fit(focus_on_object(all, options, &report, progress), options,
-                                          &report, progress);
-  const EdgeWorld& world = posed.world;
-  Sketch sketch = drop_print(posed.sketch, world, *detector, &report, progress);
+// With the clock set that all stages look at.
+ReconstructOptions started(ReconstructOptions options) {
+  if (options.budget > 0)
+    options.deadline = options.polish.deadline = options.optimize.deadline =
+        Deadline(options.budget);
+  return options;
+}
 
-  const std::vector<EdgeTarget> targets = make_targets(world, options.optimize);
-  for (int k = 0; k < options.rounds; ++k) {
-    const Round round = run_round(sketch, world, targets, options, &report, progress);
+void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  if (!options.deadline.passed()) return;
+  char text[120];
+  std::snprintf(text, sizeof text, "the budget of %g s is used up: not all was refined",
+                options.budget);
+  warn(text, report, progress);
+}
+
+Sketch moved_in_rounds(Sketch sketch, const EdgeWorld& world,
+                       const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
+                       RunReport* report, Progress* progress) {
+  for (int k = 0; k < options.rounds && !options.deadline.passed(); ++k) {
+    const Round round = run_round(sketch, world, targets, options, report, progress);
     sketch = round.sketch;
     if (options.simplify && !round.changed) break;
   }
-  sketch = look_again(sketch, world, targets, options, &report, progress);
+  return sketch;
+}
+
+// What siblings know needs no rounds, and what no view sees no polish.
+ReconstructOptions after_family(ReconstructOptions options, const FamilyStart& family) {
+  if (family.sketch.size() == 0) return options;
+  options.rounds = 0;
+  options.final_polish = options.final_polish && family.all_free;
+  return options;
+}
+
+}  // namespace
+
+// The method. Images become edgels, edgels points in space, points strokes, and these tell whether
+// the cameras err; then rounds of drawing the strokes into the views, moving them and simplifying the
+// graph, until nothing changes; and the same once more with what is found in the edgels that are left. With siblings of the part, their
+// family's strokes, moved onto the edgels, come first, and the rest is for edgels that are left.
+Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
+                           Progress* progress) {
+  const ReconstructOptions options = started(given);
+  RunReport report;
+  report.warnings = scene.warnings;
+
+  std::vector<TagSquare> tags;
+  if (options.tags) tags = measure_tags(scene, &report, progress);
+  const EdgeWorld all = detect_scene(scene, detector, tags, options, &report, progress);
+  const EdgeWorld near = focus_on_object(all, options, &report, progress);
+  const FamilyStart family = start_from_siblings(near, options, &report, progress);
+  const ReconstructOptions last = after_family(options, family);
+  const bool cold = family.sketch.size() == 0;
+  const PosedStrokes posed = cold ? pose_and_fit(near, options, &report, progress)
+                                  : PosedStrokes{near, family.sketch};
+  const EdgeWorld& world = posed.world;
+  Sketch sketch = posed.sketch;
+  const std::vector<EdgeTarget> targets =
+      cold ? make_targets(world, options.optimize) : std::vector<EdgeTarget>();
+  if (cold) {
+    sketch = drop_print(sketch, world, *detector, &report, progress);
+    sketch = moved_in_rounds(sketch, world, targets, options, &report, progress);
+  }
+  sketch = look_again(sketch, world, targets, last, &report, progress);
   sketch = drop_print(sketch, world, *detector, &report, progress);
-  sketch = finish_sketch(sketch, world, options, &report, progress);
+  sketch = finish_sketch(sketch, world, last, &report, progress);
   if (sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
+  tell_stop(options, &report, progress);
   const Sketch proposed = propose_hidden(sketch, world, &report);
   return {sketch, report, proposed, view_names(world),
-          posed.refined ? world.views : std::vector<View>()};
+          posed.refined ? world.views : std::vector<View>(), tags};
+}
+
+Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
+                           Progress* progress) {
+  return reconstruct(scene, make_detector(options).get(), options, progress);
 }
 
 }  // namespace sketchsplat

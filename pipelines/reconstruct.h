@@ -2,6 +2,7 @@
 #pragma once
 
 #include "datasets/scene.h"
+#include "edges/tag_square.h"
 #include "pipelines/options.h"
 #include "pipelines/run_report.h"
 #include "sketches/sketch.h"
@@ -15,11 +16,16 @@ struct Reconstruction {
   Sketch proposed;
   std::vector<std::string> views;  ///< names of those that Evidence::views counts
   std::vector<View> refined;  ///< the cameras, if they are not those of the scene; else empty
+  std::vector<TagSquare> tags;     ///< that were asked for
 };
 
 /// The edges of the object in the scene, at least one. Throws TooLittleError if there is none,
-/// InputError if the detector needs files that are not there. `progress` may be null.
+/// InputError if the detector needs files that are not there. Once the budget is used up, what was
+/// found is polished once and reported; the report says so. `progress` may be null.
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
                            Progress* progress);
+/// The same with a detector that somebody else has made; `options.detector` does not count.
+Reconstruction reconstruct(const Scene& scene, Detector* detector,
+                           const ReconstructOptions& options, Progress* progress);
 
 }  // namespace sketchsplat

@@ -79,15 +79,20 @@ Json points_json(const Sketch& sketch, int s, double length, const Extent& exten
   return flat;
 }
 
-Json curves_json(const Sketch& sketch) {
-  const Extent extent = sketch_extent(sketch);
+Json json_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json curves_json(const Sketch& sketch, const Extent& extent) {
   Json curves = Json::array();
+  const std::vector<int> curve = chain_of_strokes(curve_chains(sketch), sketch.size());
   for (int s = 0; s < sketch.size(); ++s) {
     const double length = stroke_length(sketch, s);
     const Evidence e = s < int(sketch.evidence.size()) ? sketch.evidence[s] : Evidence();
     const bool visible = length > 0 && extent.size > 0;
     curves.push_back(
         {{"kind", kind_name(sketch.strokes[s].kind)},
+         {"nodes", {sketch.strokes[s].begin, sketch.strokes[s].end}},
+         {"views", e.views},
+         {"curve", curve[s]},
          {"length", length},
          {"opacity", e.opacity},
          {"support_views", e.support_views},
@@ -97,6 +102,34 @@ Json curves_json(const Sketch& sketch) {
          {"points", visible ? points_json(sketch, s, length, extent) : Json::array()}});
   }
   return curves;
+}
+
+// All that is needed to draw the curves over the photograph, as View and Lens do it.
+Json photo_json(const PagePhoto& photo) {
+  const View& view = photo.view;
+  const Camera& c = view.camera;
+  const Lens::Terms& k = view.lens.terms();
+  Json rotation = Json::array();
+  for (int r = 0; r < 3; ++r) rotation.push_back(json_of(view.cam_from_world.rotation.row(r)));
+  Json json = {{"name", view.name},
+               {"size", {c.width, c.height}},
+               {"camera", {c.fx, c.fy, c.cx, c.cy}},
+               {"rotation", rotation},
+               {"translation", json_of(view.cam_from_world.translation)},
+               {"jpeg", base64(photo.jpeg)}};
+  if (view.lens.is_identity()) return json;
+  json["fisheye"] = view.lens.model() == LensModel::kOpencvFisheye;
+  json["lens"] = {k.k1, k.k2, k.p1, k.p2, k.k3, k.k4, k.k5, k.k6};
+  json["range"] = std::isfinite(view.lens.range()) ? Json(view.lens.range()) : Json();
+  return json;
+}
+
+// Directions from the object, as the 3D view has them.
+Json viewpoints_json(const std::vector<Eigen::Vector3d>& viewpoints, const Extent& extent) {
+  Json directions = Json::array();
+  for (const Eigen::Vector3d& point : viewpoints)
+    directions.push_back(json_of((point - extent.center).normalized()));
+  return directions;
 }
 
 }  // namespace
@@ -110,7 +143,7 @@ Extent sketch_extent(const Sketch& sketch) {
     for (int i = 0; i < points.cols(); ++i) box.extend(points.col(i));
   }
   if (box.isEmpty()) return {};
-  return {box.center(), box.sizes().maxCoeff()};
+  return {box.center(), box.sizes().maxCoeff(), box.sizes()};
 }
 
 std::string report_json(const ReportInput& input) {
@@ -129,6 +162,8 @@ std::string report_json(const ReportInput& input) {
     json["peak_mb"] = peak_memory_mb();
   }
   json["counts"] = counts_json(input);
+  if (input.scale && !input.scale->source.empty())
+    json["scale"] = Json::parse(scale_json(*input.scale));
   json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;
   json["strokes"] = Json::array();
@@ -138,8 +173,8 @@ std::string report_json(const ReportInput& input) {
   return dump(json, 2) + "\n";
 }
 
-std::string report_html(const std::string& report, const Sketch& sketch,
-                        const std::vector<ReportImage>& overlays) {
+std::string report_html(const std::string& report, const ReportPage& page) {
+  const Extent extent = sketch_extent(*page.sketch);
   Json data;
   data["report"] = Json::parse(report);
   data["kinds"] = Json::array();
@@ -147,10 +182,12 @@ std::string report_html(const std::string& report, const Sketch& sketch,
        {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle, StrokeKind::kEllipse,
         StrokeKind::kEllipticArc, StrokeKind::kBezier})
     data["kinds"].push_back({{"name", kind_name(kind)}, {"color", kind_color(kind)}});
-  data["curves"] = curves_json(sketch);
-  data["overlays"] = Json::array();
-  for (const ReportImage& image : overlays)
-    data["overlays"].push_back({{"name", image.name}, {"png", base64(image.png)}});
+  data["extent"] = {
+      {"center", json_of(extent.center)}, {"size", extent.size}, {"sides", json_of(extent.sides)}};
+  data["curves"] = curves_json(*page.sketch, extent);
+  data["viewpoints"] = viewpoints_json(page.viewpoints, extent);
+  data["photos"] = Json::array();
+  for (const PagePhoto& photo : page.photos) data["photos"].push_back(photo_json(photo));
 
   return fill_page(kReportPage, dump(data, -1));
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "pipelines/known_scale.h"
+#include "pipelines/page_photos.h"
 #include "pipelines/reconstruct.h"
 
 namespace sketchsplat {
@@ -12,12 +14,13 @@ namespace sketchsplat {
 struct ReportInput {
   const Reconstruction* reconstruction;
   const Scene* scene;
-  std::string options_json;  ///< object of option -> value (fields_json)
+  std::string options_json;   ///< object of option -> value (fields_json)
   bool reproducible = false;  ///< without seconds, memory and threads
+  const KnownScale* scale = nullptr;  ///< null: nobody knows
 };
 
-/// report.json: seconds per stage, peak memory, counts, rounds, warnings, options, version, commit,
-/// threads.
+/// report.json: seconds per stage, peak memory, counts, the scale if somebody knows it, rounds,
+/// warnings, options, version, commit, threads.
 std::string report_json(const ReportInput& input);
 
 struct ReportImage {
@@ -25,14 +28,22 @@ struct ReportImage {
   std::string png;   ///< the bytes of the file
 };
 
+/// What report.html shows beside the report.
+struct ReportPage {
+  const Sketch* sketch;
+  std::vector<PagePhoto> photos = {};  ///< under the curves
+  /// Where the views of Evidence::views stand, world; none: nobody knows what they see.
+  std::vector<Eigen::Vector3d> viewpoints = {};
+};
+
 /// report.html: one page that needs nothing but itself. `report` is the text of report.json.
-std::string report_html(const std::string& report, const Sketch& sketch,
-                        const std::vector<ReportImage>& overlays);
+std::string report_html(const std::string& report, const ReportPage& page);
 
 /// Box around the curves, from samples of them; zero-sized at the origin if there are none.
 struct Extent {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double size = 0;  ///< longest side, world units
+  Eigen::Vector3d sides = Eigen::Vector3d::Zero();
 };
 Extent sketch_extent(const Sketch& sketch);
 

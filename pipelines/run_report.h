@@ -28,7 +28,8 @@ struct RunReport {
   Numbers counts;               ///< of the scene and the method: "views", "edgels"
   std::vector<Numbers> rounds;  ///< one row per round
   std::vector<Regularity> regularities;  ///< that the sketch keeps to
-  std::vector<Numbers> strokes;  ///< what the confidence of each stroke was made of, see confidence.h
+  std::vector<Numbers>
+      strokes;  ///< what the confidence of each stroke was made of, see confidence.h
   std::vector<std::string> warnings;
 };
 

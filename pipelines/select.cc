@@ -82,6 +82,15 @@ std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& worl
   return round;
 }
 
+// [px] A pixel, or more where cameras err: three standard deviations of what strokes stand off.
+double reach_of_edgels(const Sketch& sketch, const EdgeWorld& world, MatchOptions match) {
+  constexpr double kLeast = 1, kMost = 3;
+  match.min_run = 0;
+  match.reach_px = kMost;
+  const Observation wide = observe(sketch, world, match, 4.0);
+  return std::clamp(3 * scatter_px(world, wide), kLeast, kMost);
+}
+
 }  // namespace
 
 const char* verdict_name(Verdict verdict) {
@@ -92,9 +101,9 @@ const char* verdict_name(Verdict verdict) {
 Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
                          const SelectOptions& options) {
   MatchOptions match;
-  match.reach_px = 1.0;
   match.exclusive = false;
   match.quadratics = false;
+  match.reach_px = reach_of_edgels(sketch, world, match);
   const StrokeObservation o =
       with_strokes(observe(sketch, world, match, 2.0), world, options.min_views);
   MatchOptions lone = match;
@@ -122,13 +131,16 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     for (int n : {s.begin, s.end}) sum += n >= 0 && degree[n] == 1 ? node : 0;
     return sum;
   };
+  const auto known = [&](int i) {
+    return !options.prior.empty() && !std::isnan(options.prior[i]);
+  };
   const std::vector<char> round = explain_rims(o, world, options, &owned);
   explained = owned;
   for (int i : order) {
     Verdict& verdict = result.verdicts[i];
     const auto judge_by = [&](const EdgelFlags& others) {
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
-      result.nats[i] = judge.nats(i, &others);
+      result.nats[i] = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
       verdict = result.nats[i] > options.least_nats ? Verdict::kKept : Verdict::kUnlikely;
     };
     if (o.strokes[i].length_px < options.min_length_px) verdict = Verdict::kShort;
@@ -136,12 +148,14 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     if (verdict != Verdict::kKept) continue;
     // Where two edges run side by side, the better one has explained its edgels already.
     const double places = own_cover(o, i, options.min_views, owned) * o.strokes[i].samples;
-    if (claim(o, i, owned, &per_view) < options.min_views || kOutlierNats * places < price(i))
+    if (!known(i) && (claim(o, i, owned, &per_view) < options.min_views ||
+                      kOutlierNats * places < price(i)))
       verdict = judge.nats(i, nullptr) > options.least_nats ? Verdict::kRedundant
                                                             : Verdict::kUnlikely;
     else
       judge_by(owned);
-    if (verdict != Verdict::kKept && claim(o, i, explained, &per_view) >= options.min_views)
+    if (verdict != Verdict::kKept &&
+        (known(i) || claim(o, i, explained, &per_view) >= options.min_views))
       judge_by(explained);
     if (verdict != Verdict::kKept) continue;
     keep[i] = true;

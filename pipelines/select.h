@@ -16,6 +16,10 @@ struct SelectOptions {
   double price = 3;            ///< [nat] of a parameter, see SegmentOptions
   double place_sigma_px = 0.2;  ///< [px] see place_sigma_px
   EvidenceModel evidence;
+  /// [nat] log prior odds of strokes that are known from elsewhere, one per stroke, NaN: none. They
+  /// add to the likelihood; neither their number of views nor their price counts, which those paid
+  /// for who knew them first. Empty: of no stroke.
+  std::vector<double> prior;
 };
 
 /// Why a stroke was not kept; the first reason that holds.
@@ -31,7 +35,7 @@ const char* verdict_name(Verdict verdict);
 struct Selection : PassResult {
   std::vector<Verdict> verdicts;   ///< one per stroke that came in
   std::vector<StrokeStats> stats;  ///< what the verdicts rest on
-  std::vector<double> nats;        ///< of what no better stroke explains, see likelihood.h
+  std::vector<double> nats;        ///< of what no better stroke explains, and of the prior
 };
 
 /// Keeps the fewest strokes that explain the edgels: best supported first, a stroke stays if the

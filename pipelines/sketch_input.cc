@@ -7,6 +7,7 @@
 
 #include "datasets/errors.h"
 #include "sketches/io.h"
+#include "sketches/json_text.h"
 
 namespace sketchsplat {
 namespace fs = std::filesystem;
@@ -14,7 +15,11 @@ namespace {
 
 nlohmann::json parsed(const fs::path& path) {
   std::ifstream in(path);
-  return nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+  try {
+    return parse_json<nlohmann::json>(in, path.string());
+  } catch (const std::exception&) {
+    return {};
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/errors.h"
+#include "edges/find_object.h"
 #include "edges/focus.h"
 #include "edges/link.h"
 #include "edges/unexplained.h"
@@ -42,8 +43,8 @@ double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
 
 }  // namespace
 
-EdgeWorld detect_scene(const Scene& scene, Detector* detector, const ReconstructOptions& options,
-                       RunReport* report, Progress* progress) {
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
+                       const ReconstructOptions& options, RunReport* report, Progress* progress) {
   std::vector<Detection> found = detect_all(scene, detector, report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
@@ -53,7 +54,7 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const Reconstruct
     edgels += found[i].map.edgels.size();
     with_edges += !found[i].map.edgels.empty();
     views.push_back(scene.views[i]);
-    maps.push_back(std::move(found[i].map));
+    maps.push_back(without_tags(found[i].map, scene.views[i], tags));
   }
   if (with_edges < kFewestViews)
     throw TooLittleError(scene.folder + ": expected edges in at least " +
@@ -69,6 +70,11 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const Reconstruct
 
 EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
                           RunReport* report, Progress* progress) {
+  if (!options.box.isEmpty()) {
+    ObjectRegion region;
+    region.box = options.box;
+    return focused(world, region, options.detect.meaning.most_sides);
+  }
   const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
                                   [](const EdgelMap& m) { return !m.mask.empty(); });
   if (masked) return world;
@@ -142,6 +148,7 @@ PolishOptions early(const ReconstructOptions& options) {
 
 ExtentOptions extent_options(const ReconstructOptions& options) {
   ExtentOptions extent = options.extent;
+  extent.box = options.box;
   if (options.detector == "2dgs-sn")
     extent.gap_price = std::max(extent.gap_price, options.surfel_gap_price);
   return extent;
@@ -314,7 +321,7 @@ Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
                   const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
                   RunReport* report, Progress* progress) {
-  if (!options.second_look) return sketch;
+  if (!options.second_look || options.deadline.passed()) return sketch;
   const Round more = with_rest(sketch, world, options, report, progress);
   if (!more.changed || options.rounds == 0) return more.sketch;
   return run_round(more.sketch, world, targets, options, report, progress).sketch;
@@ -363,7 +370,7 @@ int drop_unsure(const StrokeObservation& observation, const EdgeWorld& world, do
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
-  const Closed closed = options.close.on
+  const Closed closed = options.close.on && !options.deadline.passed()
                             ? close_graph(sketch, world, prices(options), options.close)
                             : Closed{sketch};
   Sketch out = closed.sketch;
@@ -373,7 +380,7 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
     PolishOptions smooth = options.polish;  // what is nearly one curve becomes one
     smooth.smooth_sigma_deg *= kSmoother;
     out = polish(closed.sketch, world, smooth, &last);
-    if (options.regularize.on && last.layout.size() > 0) {
+    if (options.regularize.on && last.layout.size() > 0 && !options.deadline.passed()) {
       regular = regularize(out, with_strokes(std::move(last), world, 1), world.footprint,
                            regularize_options(options));
       out = regular.sketch;

@@ -6,20 +6,22 @@
 
 #include "datasets/scene.h"
 #include "edges/lift.h"
+#include "edges/tag_square.h"
 #include "pipelines/optimize.h"
 #include "pipelines/options.h"
 #include "pipelines/run_report.h"
 
 namespace sketchsplat {
 
-/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are left
-/// out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError if no
-/// image, or no map of that name, can be read.
-EdgeWorld detect_scene(const Scene& scene, Detector* detector, const ReconstructOptions& options,
-                       RunReport* report, Progress* progress);
+/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are
+/// left out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError
+/// if no image, or no map of that name, can be read. What lies on tags is left out.
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
+                       const ReconstructOptions& options, RunReport* report, Progress* progress);
 
 /// Without masks: finds the object among other things (object_region.h) by the longest edges, and
-/// leaves out edgels that cannot be of it. With masks nothing changes.
+/// leaves out edgels that cannot be of it. With masks nothing changes. If the user gave a box, the
+/// object is what lies in it, with masks or without.
 EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
                           RunReport* report, Progress* progress);
 

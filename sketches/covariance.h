@@ -13,7 +13,8 @@ namespace sketchsplat {
 struct Sighting {
   int sample = 0;  ///< of a SampleLayout
   int view = 0;
-  int edgel = 0;  ///< of the view: neighbours of a foreshortened stroke find the same, which errs once
+  int edgel =
+      0;  ///< of the view: neighbours of a foreshortened stroke find the same, which errs once
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< [px / world unit]
   double distance_px = 0;
 };

@@ -16,6 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormatVersion = 1;
+constexpr size_t kMost = 50000;  // nodes, strokes, handles of one: adding them copies the others
 
 Json json_of(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -106,6 +107,14 @@ class Reader {
     if (!a.is_array()) fail("an array as \"" + std::string(key) + "\" in " + where, a.type_name());
     return a;
   }
+  // An array of what a sketch is made of.
+  const Json& parts(const Json& object, const char* key, const std::string& where) const {
+    const Json& a = array(object, key, where);
+    if (a.size() > kMost)
+      fail("at most " + std::to_string(kMost) + " " + key + " in " + where,
+           std::to_string(a.size()));
+    return a;
+  }
   Eigen::Vector3d point(const Json& j, const std::string& where) const {
     if (!j.is_array() || j.size() != 3) fail("three numbers as " + where, summary(j));
     for (const Json& x : j)
@@ -152,7 +161,7 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
       reader.fail("an index of a node in " + where + " below " + std::to_string(num_nodes),
                   std::to_string(ends[k]));
   }
-  const Json& handles = reader.array(j, "handles", where);
+  const Json& handles = reader.parts(j, "handles", where);
   const bool spans = kind == StrokeKind::kBezier && handles.size() % 3 == 2;
   if (!spans && int(handles.size()) != num_handles(kind))
     reader.fail(std::to_string(num_handles(kind)) + " handles in " + where +
@@ -179,13 +188,13 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
   if (j.contains("determined"))
     e.determined = reader.integer(j["determined"], "a count as determined in " + where);
   // Each third point of a chain of cubics is a joint.
-  while (spans && points.size() > 2) {
-    const int joint = sketch->add_node(points[2]);
-    sketch->add_stroke(kind, ends[0], joint, {points[0], points[1]}, e);
+  size_t at = 0;
+  for (; spans && at + 2 < points.size(); at += 3) {
+    const int joint = sketch->add_node(points[at + 2]);
+    sketch->add_stroke(kind, ends[0], joint, {points[at], points[at + 1]}, e);
     ends[0] = joint;
-    points.erase(points.begin(), points.begin() + 3);
   }
-  sketch->add_stroke(kind, ends[0], ends[1], points, e);
+  sketch->add_stroke(kind, ends[0], ends[1], {points.begin() + long(at), points.end()}, e);
 }
 
 }  // namespace
@@ -227,13 +236,16 @@ Sketch read_sketch_json(std::istream& in, const std::string& path) {
   if (!version.is_number_integer() || version.get<double>() != kFormatVersion)
     reader.fail("format_version " + std::to_string(kFormatVersion), Reader::summary(version));
   Sketch sketch;
-  const Json& nodes = reader.array(j, "nodes", "the file");
+  const Json& nodes = reader.parts(j, "nodes", "the file");
   sketch.nodes.resize(3, nodes.size());
   for (size_t i = 0; i < nodes.size(); ++i)
     sketch.nodes.col(i) = reader.point(nodes[i], "node " + std::to_string(i));
-  const Json& strokes = reader.array(j, "strokes", "the file");
-  for (size_t i = 0; i < strokes.size(); ++i)
+  const Json& strokes = reader.parts(j, "strokes", "the file");
+  for (size_t i = 0; i < strokes.size(); ++i) {
     read_stroke(reader, strokes[i], "stroke " + std::to_string(i), int(nodes.size()), &sketch);
+    if (sketch.strokes.size() > kMost)
+      reader.fail("at most " + std::to_string(kMost) + " pieces of curves", "more");
+  }
   const std::vector<std::string> complaints = validate(sketch);
   if (!complaints.empty())
     reader.fail("a sound sketch",

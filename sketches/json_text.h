@@ -2,10 +2,10 @@
 #pragma once
 
 #include <istream>
-#include <sstream>
 #include <string>
 
 #include "datasets/errors.h"
+#include "sketches/whole_file.h"
 
 namespace sketchsplat {
 
@@ -30,12 +30,10 @@ Json parse_json_text(const std::string& text, const std::string& path) {
   return Json::parse(text);
 }
 
-/// The same of a whole stream.
+/// The same of a whole stream; InputError if it is longer than kMostJsonBytes.
 template <typename Json>
 Json parse_json(std::istream& in, const std::string& path) {
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse_json_text<Json>(text.str(), path);
+  return parse_json_text<Json>(read_whole(&in, path, kMostJsonBytes), path);
 }
 
 }  // namespace sketchsplat

@@ -17,8 +17,8 @@ namespace sketchsplat {
 ///   circle        centre, axis               closed; axis = unit normal times radius
 ///   ellipse       centre, u, v               closed; centre + cos u + sin v
 ///   bezier        begin, h0, h1, end         cubic
-///   elliptic_arc  begin, apex, quarter, end  < 360 deg; of quarter only what is along apex - middle
-///                                            of the chord counts; see EllipticFrame
+///   elliptic_arc  begin, apex, quarter, end  < 360 deg; of quarter only what is along apex
+///                                            - middle of the chord counts; see EllipticFrame
 // clang-format on
 enum class StrokeKind { kLine, kArc, kCircle, kEllipse, kBezier, kEllipticArc };
 constexpr int kNumKinds = 6;

@@ -26,11 +26,13 @@
 #include <fstream>
 
 #include "datasets/errors.h"
+#include "sketches/whole_file.h"
 
 namespace sketchsplat {
 
 Brep read_step(const std::string& path) {
   std::ifstream file(path);
+  check_length(&file, path);
   std::string magic(13, '\0');
   if (!file.read(&magic[0], 13))
     throw InputError(path, "a STEP file", file.is_open() ? "too few bytes" : "no readable file");

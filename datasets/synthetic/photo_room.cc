@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "datasets/errors.h"
-#include "datasets/synthetic/april_tag.h"
+#include "datasets/april_tag.h"
 #include "datasets/synthetic/flat_faces.h"
 #include "datasets/synthetic/noise.h"
 

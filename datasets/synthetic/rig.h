@@ -23,7 +23,7 @@ struct RigOptions {
   RigKind kind = RigKind::kAuto;
   int views = 50;             ///< [1, 100000]
   int resolution = 800;       ///< width [px], [16, 8192]
-  int height = 0;             ///< [px], [16, 8192]; 0: the width, of photographs three quarters of it
+  int height = 0;  ///< [px], [16, 8192]; 0: the width, of photographs three quarters of it
   double focal = 0;           ///< [px]; 0 means 1111.1113654242622 at 800 px, in proportion; for
                               ///< photographs 1.15 times the width
   double object_size = 0;     ///< longest side at `distance`, in widths of the image, [0, 10]; sets

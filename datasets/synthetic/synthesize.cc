@@ -5,7 +5,7 @@
 #include <cctype>
 
 #include "datasets/errors.h"
-#include "datasets/synthetic/april_tag.h"
+#include "datasets/april_tag.h"
 #include "datasets/synthetic/mesh_part.h"
 #include "datasets/synthetic/parts.h"
 #include "datasets/synthetic/photo_painter.h"

@@ -26,7 +26,8 @@ json frame_of_view(const View& view) {
   camtoworld.topRightCorner<3, 1>() = world_from_cam.translation;
   Eigen::Matrix3d K;
   K << view.camera.fx, 0, view.camera.cx, 0, view.camera.fy, view.camera.cy, 0, 0, 1;
-  return {{"rgb_path", view.name}, {"camtoworld", json_rows(camtoworld)}, {"intrinsics", json_rows(K)}};
+  return {
+      {"rgb_path", view.name}, {"camtoworld", json_rows(camtoworld)}, {"intrinsics", json_rows(K)}};
 }
 
 json meta_data(const SyntheticScene& scene) {

@@ -19,6 +19,7 @@ constexpr double kEachCounts = 0.1;    // things that each scale has been seen i
 constexpr int kRounds = 200;           // of the EM algorithm
 constexpr double kLeastWeight = 1e-4;  // of a part of a mixture
 constexpr double kLeastRigid = 1e-6;  // of singular values: turns of a line about itself do nothing
+constexpr double kLittle = 0.125;     // of the scale, of what deviates little
 
 double log_sum(const std::vector<double>& logs) {
   const double most = *std::max_element(logs.begin(), logs.end());
@@ -93,7 +94,15 @@ PieceLikelihood::PieceLikelihood(const PieceErrors& errors, double tail_share,
          svd.singularValues()[k] > kLeastRigid * svd.singularValues()[0])
     ++k;
   basis_ = svd.matrixU().leftCols(k);
-  shape_ = svd.singularValues().head(k).cwiseAbs2().asDiagonal();
+  // Everything deviates, or the place, the direction or the size alone, and the rest little.
+  for (int wrong = 0; wrong < kWays; ++wrong) {
+    VectorXd by = VectorXd::Constant(7, wrong == 0 ? 1 : kLittle);
+    if (wrong == 1) by.head<3>().setOnes();
+    if (wrong == 2) by.segment<3>(3).setOnes();
+    if (wrong == 3) by[6] = 1;
+    const MatrixXd moves = basis_.transpose() * rigid * by.asDiagonal();
+    shapes_.push_back(moves * moves.transpose());
+  }
   const VectorXd mean = measured_.mean.reshaped();
   rigid_ = basis_.transpose() * mean;
   wave_ = mean - basis_ * rigid_;
@@ -108,21 +117,22 @@ PieceLikelihood::PieceLikelihood(const PieceErrors& errors, double tail_share,
   add(wide_, tail_share);
 }
 
-double PieceLikelihood::log_evidence(double scale, const Kind& kind) const {
-  const Eigen::LLT<MatrixXd> llt(scale * scale * shape_ + kind.covariance);
+double PieceLikelihood::log_evidence(double scale, int wrong, const Kind& kind) const {
+  const Eigen::LLT<MatrixXd> llt(scale * scale * shapes_[wrong] + kind.covariance);
   const VectorXd z = llt.matrixL().solve(rigid_);
   const MatrixXd l = llt.matrixL();
-  return std::log(kind.share) - 0.5 * z.squaredNorm() - l.diagonal().array().log().sum();
+  return std::log(kind.share / kWays) - 0.5 * z.squaredNorm() - l.diagonal().array().log().sum();
 }
 
 double PieceLikelihood::log_evidence(double scale) const {
   std::vector<double> logs;
-  for (const Kind& kind : kinds_) logs.push_back(log_evidence(scale, kind));
+  for (const Kind& kind : kinds_)
+    for (int wrong = 0; wrong < kWays; ++wrong) logs.push_back(log_evidence(scale, wrong, kind));
   return log_sum(logs);
 }
 
-DeviationModel PieceLikelihood::posterior(double scale, const Kind& kind) const {
-  const MatrixXd prior = scale * scale * shape_;
+DeviationModel PieceLikelihood::posterior(double scale, int wrong, const Kind& kind) const {
+  const MatrixXd prior = scale * scale * shapes_[wrong];
   const Eigen::LLT<MatrixXd> llt(prior + kind.covariance);
   DeviationModel out;
   const VectorXd mean = basis_ * (prior * llt.solve(rigid_)) + wave_;
@@ -139,20 +149,24 @@ DeviationModel PieceLikelihood::posterior(double scale, const Kind& kind) const 
 DeviationMixture PieceLikelihood::posterior(const DeviationPrior& prior) const {
   struct Part {
     size_t scale, kind;
+    int wrong;
   };
   std::vector<Part> parts;
   std::vector<double> weights;
   for (size_t s = 0; s < prior.scales.size(); ++s)
-    for (size_t k = 0; k < kinds_.size(); ++k) {
-      parts.push_back({s, k});
-      weights.push_back(std::log(prior.weights[s]) + log_evidence(prior.scales[s], kinds_[k]));
-    }
+    for (size_t k = 0; k < kinds_.size(); ++k)
+      for (int wrong = 0; wrong < kWays; ++wrong) {
+        parts.push_back({s, k, wrong});
+        weights.push_back(std::log(prior.weights[s]) +
+                          log_evidence(prior.scales[s], wrong, kinds_[k]));
+      }
   normalise(&weights);
   DeviationMixture out;
   double total = 0;
   for (size_t i = 0; i < parts.size(); ++i) {
     if (weights[i] < kLeastWeight) continue;
-    out.parts.push_back(posterior(prior.scales[parts[i].scale], kinds_[parts[i].kind]));
+    out.parts.push_back(
+        posterior(prior.scales[parts[i].scale], parts[i].wrong, kinds_[parts[i].kind]));
     out.weights.push_back(weights[i]);
     total += weights[i];
   }

@@ -40,7 +40,9 @@ Eigen::MatrixXd rigid_deviations(const std::vector<EdgePlace>& places);
 
 /// The likelihood of the true deviation of a piece of an edge, from what was measured. Of what was
 /// measured, that which a small similarity explains is held against the prior; the rest, a wave,
-/// stays as it was measured.
+/// stays as it was measured. A scale is that of the whole similarity, or of its shift, turn or
+/// growth alone (a hole in the wrong place, a bore of the wrong size), and an eighth of that for
+/// the rest.
 class PieceLikelihood {
  public:
   /// `rigid`: rigid_deviations(); `floor`: standard deviation that is always added.
@@ -61,13 +63,14 @@ class PieceLikelihood {
     double factor, share;
     Eigen::MatrixXd covariance;  // K x K
   };
-  double log_evidence(double scale, const Kind& kind) const;
-  DeviationModel posterior(double scale, const Kind& kind) const;
+  static constexpr int kWays = 4;  // to be wrong: in all, place, direction, size
+  double log_evidence(double scale, int wrong, const Kind& kind) const;
+  DeviationModel posterior(double scale, int wrong, const Kind& kind) const;
 
   DeviationModel measured_;
   double wide_;
   Eigen::MatrixXd basis_;   // 2 P x K, orthonormal: of rigid deviations
-  Eigen::MatrixXd shape_;   // K x K: their covariance at scale 1
+  std::vector<Eigen::MatrixXd> shapes_;  // K x K: their covariance at scale 1, by way
   Eigen::VectorXd rigid_;   // K: of what was measured
   Eigen::VectorXd wave_;    // 2 P: the rest
   Eigen::MatrixXd others_;  // 2 P x M: modes of errors, as far as they are waves

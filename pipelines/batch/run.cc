@@ -46,7 +46,8 @@ std::vector<std::string> worker_flags(const BatchRun& run) {
     if (text_of(wanted.list[i]) != text_of(known.list[i]))
       texts.push_back({wanted.list[i].name, text_of(wanted.list[i])});
   std::vector<std::string> flags = flags_of(texts, wanted.list);
-  if (!run.format.empty()) flags.insert(flags.end(), {"--format", run.format});
+  if (!run.open.format.empty()) flags.insert(flags.end(), {"--format", run.open.format});
+  if (run.open.allow_outside) flags.push_back("--allow-outside");
   flags.insert(flags.end(), {"--threads", std::to_string(run.threads)});
   return flags;
 }
@@ -202,8 +203,9 @@ std::string batch_options_json(const BatchRun& run) {
 }
 
 std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, const BatchRun& run) {
-  const std::string program = program_version() + "\n" + program_commit() + "\n" + run.format +
-                              "\n" + batch_options_json(run);
+  const std::string program = program_version() + "\n" + program_commit() + "\n" + run.open.format +
+                              (run.open.allow_outside ? " and beyond\n" : "\n") +
+                              batch_options_json(run);
   std::vector<PlannedScene> planned;
   for (const BatchScene& scene : scenes) {
     SceneKey key = {hash_of(program), input_hash(scene.folder)};
@@ -226,7 +228,7 @@ BatchPlan plan_batch(const std::vector<PlannedScene>& scenes, const BatchRun& ru
   if (open.empty()) return plan;
   Stage stage("look", int(open.size()), nullptr, progress);
   for (const SceneSize& size :
-       scene_sizes(open, run.format, kPatienceSeconds, [&] { stage.step(); }))
+       scene_sizes(open, run.open, kPatienceSeconds, [&] { stage.step(); }))
     plan.loads.push_back(expected_load(size.views, size.pixels, run.method, run.threads));
   const int places = run.jobs > 0 ? run.jobs : std::max(1, usable_cores() / run.threads);
   plan.jobs = std::min(places, int(open.size()));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/open_options.h"
 #include "pipelines/batch/schedule.h"
 #include "pipelines/batch/store.h"
 #include "pipelines/batch/summary.h"
@@ -17,7 +18,7 @@ namespace sketchsplat {
 struct BatchRun {
   std::string out;
   Shard shard;
-  std::string format;  ///< of the scenes; empty: found out
+  OpenOptions open;  ///< of the scenes
   ReconstructOptions method;
   OutputOptions output;
   int jobs = 0;                   ///< workers at a time; 0: as many as cores and memory allow

@@ -38,10 +38,10 @@ struct Message {
   SceneSize size;
 };
 
-SceneSize size_of(const std::string& folder, const std::string& format) {
+SceneSize size_of(const std::string& folder, const OpenOptions& options) {
   SceneSize size;
   try {
-    const Scene scene = open_scene(folder, format);
+    const Scene scene = open_scene(folder, options);
     size.views = int(scene.views.size());
     for (const View& view : scene.views)
       size.pixels += double(view.camera.width) * view.camera.height;
@@ -52,7 +52,7 @@ SceneSize size_of(const std::string& folder, const std::string& format) {
 }
 
 // The child: tells the sizes of the scenes from `first` on.
-[[noreturn]] void tell_sizes(const std::vector<BatchScene>& scenes, const std::string& format,
+[[noreturn]] void tell_sizes(const std::vector<BatchScene>& scenes, const OpenOptions& options,
                              int first, int pipe, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
@@ -64,7 +64,7 @@ SceneSize size_of(const std::string& folder, const std::string& format) {
   dup2(null, 1);
   dup2(null, 2);
   for (int i = first; i < int(scenes.size()); ++i) {
-    const Message message = {i, size_of(scenes[i].folder, format)};
+    const Message message = {i, size_of(scenes[i].folder, options)};
     if (write(pipe, &message, sizeof message) != sizeof message) _exit(1);
   }
   _exit(0);
@@ -96,7 +96,8 @@ std::string input_hash(const std::string& folder) {
     const std::uintmax_t size = entry->file_size(none);
     std::string line =
         entry->path().lexically_relative(folder).string() + " " + std::to_string(size);
-    if (may_hold_cameras(entry->path()) && size <= kLargest) line += " " + hash_of_file(entry->path());
+    if (may_hold_cameras(entry->path()) && size <= kLargest)
+      line += " " + hash_of_file(entry->path());
     lines.push_back(line + "\n");
   }
   std::sort(lines.begin(), lines.end());
@@ -113,15 +114,16 @@ bool has_truth(const std::string& folder) {
   }
 }
 
-std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes, const std::string& format,
-                                   double patience_seconds, const std::function<void()>& step) {
+std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes,
+                                   const OpenOptions& options, double patience_seconds,
+                                   const std::function<void()>& step) {
   std::vector<SceneSize> sizes(scenes.size());
   for (int next = 0; next < int(scenes.size());) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe can be made");
     const pid_t parent = getpid(), child = fork();
     if (child < 0) throw std::runtime_error("no process can be made");
-    if (child == 0) tell_sizes(scenes, format, next, ends[1], parent);
+    if (child == 0) tell_sizes(scenes, options, next, ends[1], parent);
     close(ends[1]);
     for (Message message; receive(ends[0], patience_seconds, &message); step()) {
       sizes[message.index] = message.size;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/open_options.h"
 #include "pipelines/batch/scene_list.h"
 
 namespace sketchsplat {
@@ -25,7 +26,8 @@ struct SceneSize {
 
 /// Opens the scenes in a child process, as strangers' files may end it; what it dies of, or takes
 /// longer than `patience_seconds` for, has no size. `step` is called after each.
-std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes, const std::string& format,
-                                   double patience_seconds, const std::function<void()>& step);
+std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes,
+                                   const OpenOptions& options, double patience_seconds,
+                                   const std::function<void()>& step);
 
 }  // namespace sketchsplat

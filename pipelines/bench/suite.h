@@ -31,8 +31,8 @@ std::vector<BenchVariant> preset_variants(const std::vector<std::string>& preset
 /// least squares has touched up to the whole method; then one part at a time is left out of it.
 std::vector<BenchVariant> ablation_variants();
 
-/// The same of `detectors`: for "2dgs-sn" alone what each part of fitting surfels is worth, one left
-/// out or exchanged at a time, beside the detector "image"; else ablation_variants().
+/// The same of `detectors`: for "2dgs-sn" alone what each part of fitting surfels is worth, one
+/// left out or exchanged at a time, beside the detector "image"; else ablation_variants().
 std::vector<BenchVariant> ablation_variants_of(const std::vector<std::string>& detectors);
 
 /// What is reported of an axis.

@@ -103,9 +103,10 @@ TEST(Nerfstudio, MasksAndWhatIsMissingAreNamed) {
                                             frame("images/nil", R"(, "mask_path": "masks/b")"));
   ASSERT_EQ(scene.views.size(), 1u);
   EXPECT_THAT(scene.views[0].mask_path, HasSubstr("/masks/a.png"));
-  EXPECT_THAT(scene.warnings, ElementsAre("poses without an image: 2 (images/none.png, images/nil)",
-                                          "images without a pose: 1 (images/b.png)",
-                                          "masks that are missing: 1 (masks/b)"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("poses without an image: 2 (images/none.png, images/nil)",
+                          "images without a pose: 1 (images/b.png)",
+                          "masks that are missing or outside of the scene: 1 (masks/b)"));
 }
 
 std::string complaint(const std::string& top, const std::string& frames = frame("images/a.png")) {

@@ -73,7 +73,8 @@ TEST(GeometryEdges, FindsADepthStepToAFractionOfAPixelWithItsNearSide) {
   }
 }
 
-// Two planes, and the line n . p = c of the image where they meet: 1 / depth is affine in the pixel.
+// Two planes, and the line n . p = c of the image where they meet: 1 / depth is affine in the
+// pixel.
 struct Roof {
   GeometryMaps maps;
   Vector2d n;

@@ -100,7 +100,8 @@ TEST(Rim, EdgesOfAThinSheetAreNoRimsThoughARoundBarWouldLookAlike) {
       edges.push_back(segment(kMiddle + Vector3d(x, y, -0.4), kMiddle + Vector3d(x, y, 0.4)));
   const EdgeWorld world = world_of(0, edges, true);
   for (const double x : {-a, a})
-    EXPECT_FALSE(fit_rim(world, vertical_line(0.5 + x, 0.5 + a, 0.3), {}).is_round(world.footprint));
+    EXPECT_FALSE(
+        fit_rim(world, vertical_line(0.5 + x, 0.5 + a, 0.3), {}).is_round(world.footprint));
 }
 
 TEST(Rim, ExplainsTheContoursInAllViewsAndNoEdgeBeside) {

@@ -58,7 +58,8 @@ TEST(Scenes, ResultsMayBeFilesOfAnybody) {
   // NEF's cells: x and y exchanged, 2.4 / 256 each, the first at -1.2.
   folder.write("results/record_c_stage2_cubic.json",
                R"({"date": "", "scene_name": "c.ply", "curves_ctl_pts":
-               [[[128,128,128],[128,163.5555555,128],[128,199.111111,128],[128,234.6666666,128]]]})");
+               [[[128,128,128],[128,163.5555555,128],[128,199.111111,128],
+                 [128,234.6666666,128]]]})");
   for (const SceneEvaluation& scene : all(folder)) {
     EXPECT_NEAR(scene.evaluation.fine.levels[0].f, 100, 1e-4) << scene.name;
     EXPECT_EQ(scene.evaluation.structure.matched, 1) << scene.name;

@@ -167,7 +167,7 @@ TEST(SceneSizes, AreThoseOfTheHeadersAndBrokenScenesHaveNone) {
                                                     {"broken", folder.path() + "/broken"},
                                                     {"gone", folder.path() + "/gone"},
                                                     scene("three", 3)},
-                                                   "", 60, [&] { ++steps; });
+                                                   {}, 60, [&] { ++steps; });
   ASSERT_EQ(sizes.size(), 4u);
   EXPECT_EQ(sizes[0].views, 2);
   EXPECT_EQ(sizes[0].pixels, 2 * 8 * 6);
@@ -185,7 +185,7 @@ TEST(SceneSizes, ASceneThatTakesTooLongCostsItsOwnSizeOnly) {
   folder.write("next/meta_data.json", "{}");
   int steps = 0;
   const std::vector<SceneSize> sizes =
-      scene_sizes({{"slow", folder.path() + "/slow"}, {"next", folder.path() + "/next"}}, "", 0.2,
+      scene_sizes({{"slow", folder.path() + "/slow"}, {"next", folder.path() + "/next"}}, {}, 0.2,
                   [&] { ++steps; });
   EXPECT_EQ(sizes.size(), 2u);
   EXPECT_EQ(steps, 2);

@@ -66,7 +66,8 @@ TEST_F(Program, HelpListsEveryOptionWithItsDefault) {
   DetectionOptions detect;
   list_fields(&detect, &fields);
   // Long lines are wrapped.
-  const std::string help = std::regex_replace(run("detect --help").out, std::regex("\\s+"), " ");
+  const std::string help =
+      std::regex_replace(run("detect --help-all").out, std::regex("\\s+"), " ");
   for (const Field& field : fields.list) {
     EXPECT_THAT(help,
                 testing::AnyOf(HasSubstr("--" + field.name), HasSubstr("--[no-]" + field.name)));
@@ -78,9 +79,34 @@ TEST_F(Program, HelpListsEveryOptionWithItsDefault) {
   }
 }
 
+TEST_F(Program, HelpOfReconstructFitsOnAPageAndSaysWhereTheRestIs) {
+  const std::string some = run("reconstruct --help").out, all = run("reconstruct --help-all").out;
+  EXPECT_LE(count_lines(some), 40);
+  EXPECT_THAT(some, AllOf(HasSubstr("--preset"), HasSubstr("--threads"), HasSubstr("--scale"),
+                          HasSubstr("--min-confidence"), HasSubstr("--help-all shows ")));
+  EXPECT_THAT(some, testing::Not(HasSubstr("--lift-stride")));
+  EXPECT_THAT(all, AllOf(HasSubstr("--lift-stride"), HasSubstr("Threads to use")));
+}
+
+TEST_F(Program, ThreadsThatWaitSpinForMicrosecondsUnlessTheUserSaysSo) {
+  const std::string program = std::string("'") + SKETCHSPLAT_BINARY + "'";
+  const auto spins = [&](const std::string& set) {  // as libgomp says, the last time it is loaded
+    const std::string file = in_folder("env");
+    std::system(("env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT OMP_DISPLAY_ENV=verbose " + set + " " +
+                 program + " --version >/dev/null 2>'" + file + "'")
+                    .c_str());
+    const std::string text = text_of_file(file), key = "GOMP_SPINCOUNT = '";
+    const size_t at = text.rfind(key);
+    return at == std::string::npos ? -1.0 : std::stod(text.substr(at + key.size()));
+  };
+  EXPECT_EQ(spins(""), 2000);
+  EXPECT_GT(spins("OMP_WAIT_POLICY=active"), 1e6);
+  EXPECT_EQ(spins("GOMP_SPINCOUNT=1234"), 1234);
+}
+
 TEST_F(Program, NoLineOfHelpIsWiderThanAPage) {
   for (const std::string& verb : verbs_in(run("--help").out)) {
-    std::istringstream lines(run(verb + " --help").out);
+    std::istringstream lines(run(verb + " --help-all").out);
     std::string line;
     while (std::getline(lines, line)) EXPECT_LE(line.size(), 110u) << line;
   }

@@ -31,7 +31,8 @@ Sketch line_circle_cubic() {
 void observed(const EdgeWorld& world, Sketch* sketch) {
   MatchOptions match;
   match.reach_px = 1;
-  record_evidence(with_strokes(observe(*sketch, world, match, 3), world, 4), world, match.reach_px, sketch);
+  record_evidence(with_strokes(observe(*sketch, world, match, 3), world, 4), world, match.reach_px,
+                  sketch);
 }
 
 // Moves every edgel along its normal by chance; the look-up by pixel stays right enough.

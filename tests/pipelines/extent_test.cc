@@ -60,6 +60,19 @@ TEST_P(Extent, AStrokeThatIsTooLongRetreats) {
 
 TEST_P(Extent, AStrokeOfTheRightLengthKeepsIt) { expect_true_ends(fit_extents(truth, world, {})); }
 
+TEST_P(Extent, NoStrokeLeavesTheBox) {
+  ExtentOptions options;
+  options.box.extend(Vector3d(0.25, 0, 0));
+  options.box.extend(Vector3d(0.65, 1, 1));
+  const Sketch s = fit_extents(truth, world, options);
+  for (const double t : {0.0, 1.0}) {
+    EXPECT_GT(point_at(s, 0, t).x(), 0.25 - 1e-9);
+    EXPECT_LT(point_at(s, 0, t).x(), 0.65 + 1e-9);
+  }
+  EXPECT_NEAR(point_at(s, 0, 0).x(), 0.25, kSlack * world.footprint);
+  EXPECT_NEAR(point_at(s, 0, 1).x(), 0.65, kSlack * world.footprint);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Extent, testing::Range(0, 3), [](const auto& info) {
   return std::string(kind_name(open_kinds()[info.param].strokes[0].kind));
 });

@@ -106,12 +106,15 @@ TEST(Propose, TheFourthSideBetweenCornersThatAreThere) {
 
 TEST(Propose, NothingWhereAViewWouldHaveSeenIt) {
   const EdgeWorld everywhere = world_of({0, 0, 1}, -2);
-  EXPECT_EQ(propose_edges(box([](int a, int b) { return a == 0 && b == 1; }), everywhere).size(), 0);
-  EXPECT_EQ(propose_edges(box([](int a, int b) { return a == 0 || b == 0; }), everywhere).size(), 0);
+  EXPECT_EQ(propose_edges(box([](int a, int b) { return a == 0 && b == 1; }), everywhere).size(),
+            0);
+  EXPECT_EQ(propose_edges(box([](int a, int b) { return a == 0 || b == 0; }), everywhere).size(),
+            0);
 }
 
 TEST(Propose, NothingWhereNothingIsMissing) {
-  EXPECT_EQ(propose_edges(box([](int, int) { return false; }), world_of({1, 1, 1}, 0.75)).size(), 0);
+  EXPECT_EQ(propose_edges(box([](int, int) { return false; }), world_of({1, 1, 1}, 0.75)).size(),
+            0);
 }
 
 TEST(Propose, NothingWithoutMasks) {

@@ -15,7 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-const char kScene[] = "synthesize box-hole --views 24 --resolution 400 --seed 3 --outputs none --quiet --out ";
+const char kScene[] =
+    "synthesize box-hole --views 24 --resolution 400 --seed 3 --outputs none --quiet --out ";
 
 class Chain : public Program {
  protected:

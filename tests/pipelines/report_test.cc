@@ -6,9 +6,11 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <regex>
 
 #include "pipelines/overlay.h"
+#include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {
 namespace {
@@ -79,9 +81,10 @@ TEST(Report, TellsWhatWasDone) {
 
 TEST(Report, EmptySketchStillHasAReportAndAPage) {
   ExampleRun run;
+  const Sketch none;
   const json report = run.report();
   EXPECT_EQ(report["counts"]["curves"], 0);
-  EXPECT_TRUE(data_of(report_html(report.dump(), {}, {}))["curves"].empty());
+  EXPECT_TRUE(data_of(report_html(report.dump(), {&none}))["curves"].empty());
 }
 
 TEST(Report, NamesThatAreNoUtf8AreShownAnyway) {
@@ -93,7 +96,10 @@ TEST(Report, NamesThatAreNoUtf8AreShownAnyway) {
 TEST(ReportPage, NoTextOfTheSceneEndsTheScript) {
   ExampleRun run;
   run.scene.folder = "</script><script>alert(1)</script><!--";
-  const std::string html = report_html(run.report().dump(), {}, {{"</SCRIPT>", "png"}});
+  const Sketch none;
+  View view = view_from(2);
+  view.name = "</SCRIPT>";
+  const std::string html = report_html(run.report().dump(), {&none, {{view, "jpeg"}}});
   EXPECT_EQ(html.find("alert(1)</script>"), std::string::npos);
   EXPECT_EQ(html.find("</SCRIPT>"), std::string::npos);
   EXPECT_EQ(data_of(html)["report"]["scene"]["folder"], run.scene.folder);
@@ -101,14 +107,17 @@ TEST(ReportPage, NoTextOfTheSceneEndsTheScript) {
 
 TEST(ReportPage, NeedsNothingButItself) {
   ExampleRun run;
-  const std::string html = report_html(run.report().dump(), line_and_circle(), {});
+  const Sketch sketch = line_and_circle();
+  const std::string html = report_html(run.report().dump(), {&sketch});
   EXPECT_FALSE(std::regex_search(html, std::regex("https?://|src=\"|<link|@import|@DATA@")));
 }
 
 TEST(ReportPage, ImagesAreEmbeddedAsBase64) {
   ExampleRun run;
   const auto encoded = [&](const std::string& bytes) {
-    return data_of(report_html(run.report().dump(), {}, {{"a", bytes}}))["overlays"][0]["png"];
+    const Sketch none;
+    const json data = data_of(report_html(run.report().dump(), {&none, {{view_from(2), bytes}}}));
+    return data["photos"][0]["jpeg"];
   };
   EXPECT_EQ(encoded(""), "");  // RFC 4648, section 10
   EXPECT_EQ(encoded("f"), "Zg==");
@@ -125,7 +134,7 @@ TEST(ReportPage, CurvesFillTheUnitBoxWhateverTheUnits) {
     sketch.handles *= unit;
     sketch.handles.col(0) += Eigen::Vector3d(7, 8, 9) * unit;
     ExampleRun run;
-    const json curves = data_of(report_html(run.report().dump(), sketch, {}))["curves"];
+    const json curves = data_of(report_html(run.report().dump(), {&sketch}))["curves"];
     ASSERT_EQ(curves.size(), 2u);
     const std::vector<double> line = curves[0]["points"];
     ASSERT_EQ(line.size(), 6u);
@@ -134,6 +143,71 @@ TEST(ReportPage, CurvesFillTheUnitBoxWhateverTheUnits) {
     EXPECT_EQ(curves[0]["support_views"], 12);
     EXPECT_NEAR(curves[0]["length"], unit, 1e-9 * unit);
   }
+}
+
+TEST(ReportPage, TellsHowTheCameraAndItsLensSee) {
+  ExampleRun run;
+  const Sketch sketch = line_and_circle();
+  View view = view_from(2);
+  Lens::Terms terms;
+  terms.k1 = 0.1, terms.p2 = 0.02;
+  view.lens = Lens(LensModel::kOpencv, terms);
+  const json data =
+      data_of(report_html(run.report().dump(), {&sketch, {{view, ""}}, {{0, 0, -2}}}));
+  const json& photo = data["photos"][0];
+  EXPECT_EQ(photo["size"], json::parse("[200, 100]"));
+  EXPECT_EQ(photo["camera"], json::parse("[100.0, 100.0, 99.5, 49.5]"));
+  EXPECT_EQ(photo["translation"], json::parse("[0.0, 0.0, 2.0]"));
+  EXPECT_EQ(photo["lens"], json::parse("[0.1, 0.0, 0.0, 0.02, 0.0, 0.0, 0.0, 0.0]"));
+  EXPECT_EQ(photo["fisheye"], false);
+  EXPECT_NEAR(data["extent"]["size"].get<double>(), 1, 1e-6);
+  EXPECT_NEAR(data["viewpoints"][0][2].get<double>(), -1, 0.02);
+}
+
+// Views all around the origin, of pictures that JPEG can hardly shrink.
+TEST(PagePhotos, FitIntoAPageHoweverManyThereAre) {
+  const TempFolder folder;
+  Picture noise;
+  noise.red = noise.green = noise.blue = Image<float>(320, 200);
+  std::mt19937 random(1);
+  for (float& v : noise.red.data) v = float(random() % 256) / 255;
+  noise.green.data.assign(noise.red.data.rbegin(), noise.red.data.rend());
+  write_png(folder.file("noise.png"), noise);
+  Scene scene;
+  for (int k = 0; k < 150; ++k) {
+    scene.views.push_back(view_towards({std::cos(k), std::sin(k), 0.1}));
+    scene.views.back().image_path = folder.file("noise.png");
+    scene.views.back().camera = {320, 200, 100, 100, 159.5, 99.5};
+  }
+  scene.views[7].image_path = folder.file("missing.png");
+  const std::vector<PagePhoto> photos = page_photos(scene, {0, 0, 0});
+  size_t bytes = 0;
+  for (const PagePhoto& photo : photos) bytes += photo.jpeg.size();
+  EXPECT_GT(photos.size(), 20u);
+  EXPECT_LE(photos.size(), 100u);
+  EXPECT_LE(bytes, kMostPhotoBytes);
+  const std::string path = folder.write("photo.jpg", photos[0].jpeg);
+  EXPECT_NEAR(double(read_image_size(path).width) / read_image_size(path).height, 1.6, 0.05);
+}
+
+TEST(PagePhotos, ShowThePictureOnWhite) {
+  const TempFolder folder;
+  Picture picture;
+  picture.red = picture.green = picture.blue = Image<float>(64, 32, 0.2f);
+  picture.alpha = Image<float>(64, 32, 0.0f);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) picture.alpha.at(x, y) = 1;
+  write_png(folder.file("a.png"), picture);
+  Scene scene;
+  scene.views = {view_from(2)};
+  scene.views[0].image_path = folder.file("a.png");
+  scene.views[0].camera = {64, 32, 50, 50, 31.5, 15.5};
+  const std::vector<PagePhoto> photos = page_photos(scene, {0, 0, 0});
+  ASSERT_EQ(photos.size(), 1u);
+  const Picture back = read_picture(folder.write("a.jpg", photos[0].jpeg));
+  ASSERT_EQ(back.width(), 64);
+  EXPECT_NEAR(back.red.at(8, 16), 0.2, 0.05);
+  EXPECT_NEAR(back.red.at(56, 16), 1, 0.05);
 }
 
 TEST(Extent, LooksAtTheCurveAndNotAtItsControlPoints) {

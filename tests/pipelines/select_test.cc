@@ -107,7 +107,7 @@ TEST(Select, OfTwoStrokesOnOneEdgeOneIsKept) {
     EXPECT_EQ(out.remap.stroke[i], out.verdicts[i] == Verdict::kKept ? next++ : -1);
 }
 
-TEST(Select, AnEdgeThatStandsOffInSingleViewsIsOneIfItsDetectorErrsSo) {
+TEST(Select, AnEdgeThatStandsOffInSingleViewsIsLikelierIfItsDetectorErrsSo) {
   // Every view sees one edge of the cube a third of a pixel off, to one side or the other.
   const Vector3d off(0, 0, kPixel / 3);
   const EdgeWorld w = world_of(20, [&](int i, const View&) {
@@ -115,16 +115,16 @@ TEST(Select, AnEdgeThatStandsOffInSingleViewsIsOneIfItsDetectorErrsSo) {
     for (Vector3d& p : seen[0]) p += i / 2 % 2 ? off : -off;
     return seen;
   });
-  const auto verdict = [&w](const char* detector) {
+  const auto nats = [&w](const char* detector, int stroke) {
     ReconstructOptions options;
     options.detector = detector;
-    return select_strokes(cube(), w, select_options(options)).verdicts[0];
+    return select_strokes(cube(), w, select_options(options)).nats[stroke];
   };
-  EXPECT_EQ(verdict("image"), Verdict::kUnlikely);
-  EXPECT_EQ(verdict("2dgs-sn"), Verdict::kKept);
+  EXPECT_GT(nats("2dgs-sn", 0), nats("image", 0) + 3);
+  EXPECT_LT(nats("2dgs-sn", 5), nats("image", 5)) << "one that stands still is less sure then";
 }
 
-TEST(Select, AStrokeThatTooFewViewsSeeIsUnlikely) {
+TEST(Select, AStrokeThatTooFewViewsSeeIsNotKept) {
   const SelectOptions options;
   Sketch s = cube();
   const int rare = add_line(&s, {0.3, 0.5, 0.4}, {0.7, 0.6, 0.6});
@@ -134,8 +134,8 @@ TEST(Select, AStrokeThatTooFewViewsSeeIsUnlikely) {
       if (i % 2 == 0 && i / 2 < seeing) seen.push_back(polyline_of(s, rare));
       return seen;
     });
-    const Verdict expected = seeing < options.min_views ? Verdict::kUnlikely : Verdict::kKept;
-    EXPECT_EQ(select_strokes(s, w, options).verdicts[rare], expected) << seeing << " views";
+    const Verdict verdict = select_strokes(s, w, options).verdicts[rare];
+    EXPECT_EQ(verdict == Verdict::kKept, seeing >= options.min_views) << seeing << " views";
   }
 }
 
@@ -192,12 +192,12 @@ TEST(Select, AnEdgeStaysThoughManyViewsSeeAnotherOneInItsPlace) {
 }
 
 TEST(Select, AnEdgeThatFewViewsSeeStaysThoughOthersLieInItsPlaceWhereItIsHidden) {
-  // Four pixels beside an edge that all see: five views see it, many see the other near it.
+  // Four pixels beside an edge that all see: fifteen views see it, many see the other near it.
   Sketch s;
   const Vector3d gap(0, 0, 4 * kPixel);
   add_line(&s, {0.1, 0.5, 0.5}, {0.9, 0.5, 0.5});
   const int rare = add_line(&s, Vector3d(0.3, 0.5, 0.5) + gap, Vector3d(0.7, 0.5, 0.5) + gap);
-  for (int seeing : {0, 5}) {
+  for (int seeing : {0, 15}) {
     int shown = 0;
     const EdgeWorld w = world_of(60, [&](int, const View& v) {
       std::vector<Polyline> seen = {polyline_of(s, 0)};
@@ -228,8 +228,8 @@ TEST(Select, SaysWhyAStrokeFalls) {
     maps.push_back(ideal_edgels(v, seen));
     std::vector<Edgel>& e = maps.back().edgels;
     for (size_t i = sharp; i < soft_end; ++i) e[i].width = 3;
-    for (size_t i = soft_end; i < e.size(); ++i) {  // to and fro within a pixel
-      const float d = 0.8f * float(std::sin(2.4 * double(i)));
+    for (size_t i = soft_end; i < e.size(); ++i) {  // to and fro
+      const float d = 1.6f * float(std::sin(2.4 * double(i)));
       e[i].x += d * e[i].nx, e[i].y += d * e[i].ny;
     }
     build_lookup(&maps.back(), 4.0);

@@ -124,13 +124,31 @@ TEST(Prior, WhatIsWithinErrorsIsDrawnToWhatIsExpected) {
   EXPECT_NEAR(far.parts[0].mean.col(0).norm(), 0.3, 0.01);
 }
 
-TEST(Prior, ARigidMoveOfACircleHasSixWays) {
+std::vector<EdgePlace> circle_places() {
   std::vector<EdgePlace> circle(12);
   for (int i = 0; i < 12; ++i) {
     const double a = M_PI * i / 6;
     circle[i].nominal = Vector3d(std::cos(a), std::sin(a), 0);
     circle[i].tangent = Vector3d(-std::sin(a), std::cos(a), 0);
   }
+  return circle;
+}
+
+// One thing is wrong with it, six are right, and nearly all other edges are right altogether.
+TEST(Prior, ABoreOfTheWrongSizeIsWrongThoughEverythingElseIsRight) {
+  const auto places = circle_places();
+  const MatrixXd rigid = rigid_deviations(places);
+  PieceErrors errors;
+  errors.model.mean = MatrixXd((4 * rigid.col(6)).reshaped(2, 12));
+  errors.model.modes = 0.3 * rigid;
+  DeviationPrior prior = vague_prior(1);
+  for (size_t k = 0; k < prior.weights.size(); ++k) prior.weights[k] = k == 0 ? 0.96 : 0.005;
+  const DeviationMixture there = PieceLikelihood(errors, 0.1, rigid, 1e-3).posterior(prior);
+  EXPECT_LT(share_within(draw_largest({there}), 1), 0.01);
+}
+
+TEST(Prior, ARigidMoveOfACircleHasSixWays) {
+  const std::vector<EdgePlace> circle = circle_places();
   const auto ways = [](const std::vector<EdgePlace>& places) {
     Eigen::JacobiSVD<MatrixXd> svd(rigid_deviations(places));
     svd.setThreshold(1e-9);

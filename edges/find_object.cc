@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/object_region.h"
+#include "edges/find_object.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,8 +8,6 @@
 #include <map>
 #include <numeric>
 #include <random>
-
-#include "edges/lift.h"
 
 namespace sketchsplat {
 namespace {
@@ -121,6 +119,30 @@ std::vector<int> group_of(const std::vector<Vector2d>& places, double cell, int*
   std::vector<int> out;
   for (const Vector2d& p : places) out.push_back(group[cell_of(p)]);
   return out;
+}
+
+// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a
+// gap.
+std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
+                            int start, double footprint, const RegionOptions& options) {
+  std::vector<char> own(1 + *std::max_element(group.begin(), group.end()), 0);
+  own[start] = 1;
+  std::vector<Vector2d> taken;
+  for (bool more = true; more;) {
+    more = false;
+    taken.clear();
+    Eigen::AlignedBox2d box;
+    for (size_t i = 0; i < places.size(); ++i)
+      if (own[group[i]]) taken.push_back(places[i]), box.extend(places[i]);
+    const double gap = std::max(options.gap_px * footprint, options.gap * box.sizes().norm());
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (own[group[i]] || box.exteriorDistance(places[i]) > gap) continue;
+      more |= own[group[i]] = std::any_of(taken.begin(), taken.end(), [&](const Vector2d& p) {
+        return (p - places[i]).squaredNorm() < gap * gap;
+      });
+    }
+  }
+  return taken;
 }
 
 double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
@@ -238,9 +260,7 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
         std::exp(-0.5 * (places[i] - region.frame * middle).squaredNorm() / (near * near));
   if (count == 0) return region;
   const int best = int(std::max_element(weight.begin(), weight.end()) - weight.begin());
-  std::vector<Vector2d> own;
-  for (size_t i = 0; i < places.size(); ++i)
-    if (group[i] == best) own.push_back(places[i]);
+  const std::vector<Vector2d> own = grown(places, group, best, footprint, options);
   region.table = table;
   region.above = options.above_px * footprint;
   region.outline = convex_hull(widened(own, options.reach_px * footprint));

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "edges/lift.h"
+#include "pipelines/options.h"
+#include "pipelines/run_report.h"
+#include "sketches/sketch.h"
+
+namespace sketchsplat {
+
+struct FamilyStart {
+  Sketch sketch;         ///< empty: the part is none of the family, or there are no siblings
+  bool all_free = true;  ///< enough views see every stroke; else some are where the family has them
+};
+
+/// The part in the views, by its siblings (options.like): the member of their family that fits
+/// best, every stroke then moved onto its own edgels and judged as ever, but that siblings have it
+/// counts in its favour. Strokes that fewer than options.select.min_views views see stay with the
+/// family. The part is none of it, and the report says so, if too many of its edgels lie on no
+/// stroke, or too many strokes on no edgels. Throws InputError.
+FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,
+                           RunReport* report, Progress* progress);
+
+}  // namespace sketchsplat

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# rules_test.sh SOURCE BUILD [RULE]: what holds of every file of the repository. Rules: licences,
+# packages, cgal, style_sheet, words, columns.
+set -uo pipefail
+build=$(readlink -f "$2")
+cd "$1"
+failed=0
+fail() { echo "failed: $*" >&2; failed=1; }
+
+# Files that people write, without data that programs compare with.
+sources() {  # PATTERNS
+  find . -type d \( -name '.git' -o -name 'build*' -o -name 'out*' -o -path ./tests/golden \) -prune \
+    -o -type f "$@" -print
+}
+
+licences() {
+  grep -q '^MIT License' LICENSE || fail "LICENSE is not the MIT licence"
+  local file
+  while read -r file; do
+    head -n 3 "$file" | grep -q 'SPDX-License-Identifier: MIT' ||
+      fail "$file: expected SPDX-License-Identifier: MIT in its first lines"
+  done < <(sources \( -name '*.cc' -o -name '*.h' -o -name '*.py' -o -name '*.sh' -o -name '*.cmake' \
+    -o -name CMakeLists.txt -o -name '*.yml' -o -name '*.html' -o -name '*.css' -o -name '*.js' \
+    -o -name '*.in' -o -path ./run -o -path ./.ci/run -o -name Containerfile -o -name '.clang-*' \))
+}
+
+packages() {  # every package that ./run installs, and every library that CMake looks for
+  local name
+  for name in $(sed -n '/^packages=(/,/^)/{s/#.*//;s/packages=(//;s/)//;p}' run); do
+    grep -q "\`$name\`" docs/licences.md || fail "docs/licences.md does not name the package $name"
+  done
+}
+
+cgal() {  # no header of CGAL under the GPL takes part in a build
+  local header count=0
+  while read -r header; do
+    count=$((count + 1))
+    ! grep -q 'SPDX-License-Identifier: GPL' "$header" || fail "$header is under the GPL"
+  done < <(ninja -C "$build" -t deps | grep -o '/[^ ]*/include/CGAL/[^ ]*' | sort -u)
+  [ $count -gt 0 ] || fail "the build has read no header of CGAL"
+}
+
+style_sheet() {  # a formatter of C++ makes of color-scheme: what no browser knows
+  ! grep -nE '[a-z] - [a-z]| : |[0-9] %' pipelines/page.css || fail "pipelines/page.css is no CSS"
+}
+
+words() {  # README.md is short, and what it and docs/ link to exists
+  [ "$(wc -l <README.md)" -le 100 ] || fail "README.md has more than 100 lines"
+  [ "$(tr -d '|' <README.md | wc -w)" -le 1000 ] || fail "README.md has more than 1000 words"
+  local page link
+  for page in README.md docs/*.md; do
+    while read -r link; do
+      case $link in http* | *capture.md) continue ;; esac
+      [ -e "$(dirname "$page")/${link%%#*}" ] || fail "$page links to $link, which is not there"
+    done < <(grep -o '](\([^)]*\))' "$page" | sed 's/](\(.*\))/\1/')
+  done
+}
+
+columns() {  # as .clang-format has it; texts of JSON may be longer
+  local line
+  while read -r line; do fail "more than 100 columns: $line"; done < <(
+    sources \( -name '*.cc' -o -name '*.h' -o -name '*.py' \) |
+      LC_ALL=C.UTF-8 xargs grep -nE '^.{101,}' | grep -v 'R"(' | cut -c1-80)
+}
+
+for rule in ${3:-licences packages cgal style_sheet words columns}; do $rule; done
+[ $failed = 0 ] && echo passed
+exit $failed
