@@ -37,8 +37,8 @@ void check_frame_count(const std::string& path, std::uint64_t count);
 /// Elements of the array `frames`. Throws InputError.
 std::vector<JsonValue> frames_of(const JsonValue& root);
 
-/// Whether a scene may reach for the file: it lies in the scene's folder by its name alone (links in
-/// the folder may lead anywhere), or the user allows what lies outside.
+/// Whether a scene may reach for the file: it lies in the scene's folder by its name alone (links
+/// in the folder may lead anywhere), or the user allows what lies outside.
 bool may_reach(const SceneSource& source, const std::string& path);
 
 /// The image of the frame: folder/name, see find_image, unless that lies outside of the scene.

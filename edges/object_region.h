@@ -13,8 +13,8 @@ struct ObjectRegion {
   /// What the object stands on: inside of the half space of positive distances.
   std::optional<Eigen::Hyperplane<double, 3>> table;
   double above = 0;  ///< height over the table, world units, up to which what is seen may be on it
-  /// The object seen along the table's normal: corners of convex polygons, counter-clockwise, in the
-  /// plane's frame (x, y of `frame`); empty without a table. The one on the table is smaller.
+  /// The object seen along the table's normal: corners of convex polygons, counter-clockwise, in
+  /// the plane's frame (x, y of `frame`); empty without a table. The one on the table is smaller.
   std::vector<Eigen::Vector2d> outline, outline_on_table;
   Eigen::Matrix<double, 2, 3> frame = Eigen::Matrix<double, 2, 3>::Zero();
 

@@ -3,9 +3,9 @@
 """How well does one AprilTag tell the scale, and does the stated sigma say so?
 
 Photographs of parts with a tag on the table (`synthesize --style photo`) are made for every seed,
-and `reconstruct --dry-run --scale-by tag=...` measures the tag in them. The true edge is known: written
-are the error of the scale and the stated standard deviation, both relative, of each seed, and the
-RMS of the errors over that of the sigmas, which is 1 if these are honest.
+and `reconstruct --dry-run --scale-by tag=...` measures the tag in them. The true edge is known:
+written are the error of the scale and the stated standard deviation, both relative, of each seed,
+and the RMS of the errors over that of the sigmas, which is 1 if these are honest.
 
   eval/tag_scale.py --binary build/pipelines/sketchsplat --work DIR [--seeds 30] [--views 50]
 """

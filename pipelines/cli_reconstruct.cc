@@ -189,12 +189,13 @@ Verb reconstruct_verb() {
   out.required = true;
   out.short_name = "o";
   f.choose("format", &arguments->open.format, scene_formats(),
-           "What the folder is; if left out, its files decide");
+           "What the folder is; if left out, its files decide")
+      .expert = true;
   f.add("allow-outside", &arguments->open.allow_outside,
         "Read images that the scene file places outside of its folder, too")
       .expert = true;
   f.add("dry-run", &arguments->dry_run,
-        "Say what would be read, how long it takes, how much memory");
+        "Say what would be read, and what it takes");
   f.add("images", &arguments->images, "DIR",
         "Photographs without cameras: COLMAP finds them first");
   f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
@@ -204,7 +205,6 @@ Verb reconstruct_verb() {
   verb.name = "reconstruct";
   verb.summary = "Turn calibrated images of an object into its edges as curves";
   verb.examples = {"sketchsplat reconstruct scenes/part --out out/part",
-                   "sketchsplat reconstruct scenes/part -o out/part --detector maps:DexiNed",
                    "sketchsplat reconstruct --images photos -o out/part --masks masks",
                    "sketchsplat reconstruct scenes/part -o out/part --scale-by tag=10mm"};
   verb.fields = f.list;

@@ -208,7 +208,7 @@ Eigen::AlignedBox3d parse_box(const std::string& text) {
 
 void list_region(ReconstructOptions* o, Fields* f) {
   f->add("box", &o->box_text, "x0,y0,z0,x1,y1,z1|auto",
-         "What lies in this box is the object; auto: masks or the table tell")
+         "What lies in it is the object; auto: masks or a table tell")
       .applied = [o] { o->box = parse_box(o->box_text); };
   f->add("budget", &o->budget, "s", 0, 1e9,
          "Stop refining then and report; 0: never");
@@ -218,7 +218,7 @@ void list_region(ReconstructOptions* o, Fields* f) {
 
 void list_fields(DetectionOptions* o, Fields* f) {
   f->choose("detector", &o->detector, {"image", "geometry", "2dgs-sn", "maps:NAME"},
-            "Edges of the images, of depth/ and normal/, of surfels, or in edge_NAME/");
+            "Edges of images, of depth/ and normal/, surfels, edge_NAME/");
   f->add("normals", &o->normals, "DIR", "Normals for --detector geometry, in the scene or anywhere")
       .expert = true;
   list_detect(&o->detect, f);
@@ -290,7 +290,7 @@ void list_fields(CadOptions* o, Fields* f) {
   f->add("scale", &o->scale, "units per world unit", 1e-9, 1e9, "Size of a world unit")
       .applied = [o] { o->scale_given = true; };
   f->add("scale-by", &o->scale_by, "WHAT=LENGTH|none",
-         "The same from a known length: tag, size, diameter, circle:N, line:N, nodes:N-M")
+         "The same, from tag, size, diameter, circle:N or line:N")
       .applied = [o] { if (o->scale_by != "none") parse_scale_reference(o->scale_by); };
   f->add("faces", &o->faces, "Write closed planar loops as faces in STEP");
   f->add("face-tolerance", &o->face.tolerance, "of the extent", 1e-9, 0.1,
