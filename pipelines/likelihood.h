@@ -8,11 +8,11 @@
 
 namespace sketchsplat {
 
-/// How views show edges. Numbers of the logistic fit in eval/calibrate_likelihood.py.
+/// How views show edges. Numbers with which the likelihood is calibrated (a logistic regression of
+/// right and wrong on it has slope 1) on 7536 candidates of 43 synthetic parts, 32 views of 560 px.
 struct EvidenceModel {
   double sure_rate = 0.88;     ///< views that show an edge that nothing hides, by the hull
   double unsure_rate = 0.3;    ///< the same where something may hide it
-  double blind_rate = 0.55;    ///< the same without a hull
   double miss = 0.57;          ///< likelihood ratio of a place without an edgel
   double accident = 0.02;      ///< edgels of an edge that lie anywhere
   double blurred = 0.2;        ///< edgels of no edge that are blurred by whatever made them

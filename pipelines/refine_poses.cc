@@ -224,7 +224,7 @@ double chance_share(const EdgeWorld& world, const ReconstructOptions& options) {
 }
 
 void check_agreement(const Posed& posed, double share, const ReconstructOptions& options) {
-  if (!(share < kChanceShare)) return;
+  if (!(share < kLowShare)) return;
   const double chance = chance_share(posed.world, options);
   if (share > kTimesChance * chance) return;
   char text[240];

@@ -64,7 +64,7 @@ double shape_error(const Sketch& found) {
   for (int s = 0; s < found.size(); ++s)
     for (int i = 0; i <= 10; ++i) {
       const Vector3d p = point_at(found, s, 0.1 + 0.08 * i);
-      Vector3d best;
+      Vector3d best = Vector3d::Zero();
       double least = 1e300;
       for (const Polyline& c : truth) {
         const Vector3d d = c[1] - c[0];
