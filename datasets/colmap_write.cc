@@ -47,8 +47,8 @@ std::string camera_line(int id, const View& view) {
       break;
     case LensModel::kOpencvFisheye: lens("OPENCV_FISHEYE", {k.k1, k.k2, k.k3, k.k4}); break;
   }
-  std::string text =
-      std::to_string(id) + " " + name + " " + std::to_string(c.width) + " " + std::to_string(c.height);
+  std::string text = std::to_string(id) + " " + name + " " + std::to_string(c.width) + " " +
+                     std::to_string(c.height);
   char number[40];
   for (const double value : values) {
     std::snprintf(number, sizeof number, " %.17g", value);

@@ -143,7 +143,8 @@ void System::list_rows(const Observation& o, const EdgeWorld& world) {
   std::vector<int> offset(world.views.size());
   for (int s = 0; s + 1 < int(layout_.first.size()); ++s) {
     std::fill(offset.begin(), offset.end(), -1);
-    for (int m = o.matches.first[layout_.first[s]]; m < o.matches.first[layout_.first[s + 1]]; ++m) {
+    for (int m = o.matches.first[layout_.first[s]]; m < o.matches.first[layout_.first[s + 1]];
+         ++m) {
       const SampleMatch& match = o.matches.matches[m];
       const View& view = world.views[match.view];
       const Edgel& e = world.maps[match.view].edgels[match.edgel];
@@ -364,7 +365,8 @@ Sketch System::meet(const Sketch& joined) const {
     if (!closed) add(stroke.begin, c.p[0]), add(stroke.end, c.p[c.count - 1]);
   }
   for (int n = 0; n < int(ends.size()); ++n)
-    out.nodes.col(n) = ends[n] ? Vector3d(out.nodes.col(n) / ends[n]) : Vector3d(joined.nodes.col(n));
+    out.nodes.col(n) =
+        ends[n] ? Vector3d(out.nodes.col(n) / ends[n]) : Vector3d(joined.nodes.col(n));
   return out;
 }
 

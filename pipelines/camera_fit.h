@@ -23,12 +23,12 @@ struct CameraFit {
 };
 
 /// Moves cameras and strokes, by Levenberg and Marquardt's method, so that the squared distances of
-/// the edgels from the images of the strokes become small: every edgel with the biweight of its match
-/// and as much less as its stroke has more of them in its view, where they err alike; strokes
-/// eliminated first (Schur's complement). Distances are those in the image, behind the lens, from the
-/// tangent of the stroke's image; strokes that share a node are free of one another, and their ends
-/// meet in the middle at last. The gauge is held by the prior about `stated`, from which alone it
-/// counts; world.views, which the observation was made with, are where the search begins.
+/// the edgels from the images of the strokes become small: every edgel with the biweight of its
+/// match and as much less as its stroke has more of them in its view, where they err alike; strokes
+/// eliminated first (Schur's complement). Distances are those in the image, behind the lens, from
+/// the tangent of the stroke's image; strokes that share a node are free of one another, and their
+/// ends meet in the middle at last. The gauge is held by the prior about `stated`, from which alone
+/// it counts; world.views, which the observation was made with, are where the search begins.
 CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
                       const std::vector<View>& stated, const CameraPrior& prior, int steps);
 

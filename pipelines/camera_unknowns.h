@@ -11,14 +11,14 @@ namespace sketchsplat {
 /// How far off stated cameras may be: standard deviations.
 struct CameraPrior {
   double pose_px = 1;       ///< by which each of six ways to move a view shifts the object's image
-  double focal = 0.01;      ///< relative; a tenth of it for the ratio of fx and fy where they differ
+  double focal = 0.01;  ///< relative; a tenth of it for the ratio of fx and fy where they differ
   double centre = 0.004;    ///< of the principal point, in image widths
   double lens_px = 2;       ///< by which a term of the distortion moves the corner of the image
 };
 
-/// Cameras as unknowns of least squares: six per view about a point of the object, and of each shared
-/// camera what its lens has. All of them are measured in pixels by which they move the object's
-/// image, or its corners, so that they compare.
+/// Cameras as unknowns of least squares: six per view about a point of the object, and of each
+/// shared camera what its lens has. All of them are measured in pixels by which they move the
+/// object's image, or its corners, so that they compare.
 class CameraUnknowns {
  public:
   /// `middle`: of the object, in the world; `radius_px`: of its image in each view.
@@ -46,8 +46,8 @@ class CameraUnknowns {
   /// Relative change of a camera's focal length by its first unknown.
   double focal_unit(int camera) const { return unit_[first_[camera]]; }
 
-  /// Where the image shows a point of the world; with the derivatives by the point, by the pose of the
-  /// view and by what its camera shares (num_shared columns). False if it does not.
+  /// Where the image shows a point of the world; with the derivatives by the point, by the pose of
+  /// the view and by what its camera shares (num_shared columns). False if it does not.
   struct Derivatives {
     Eigen::Matrix<double, 2, 3> point;
     Eigen::Matrix<double, 2, kPose> pose;

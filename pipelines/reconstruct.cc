@@ -53,9 +53,10 @@ ReconstructOptions after_family(ReconstructOptions options, const FamilyStart& f
 }  // namespace
 
 // The method. Images become edgels, edgels points in space, points strokes, and these tell whether
-// the cameras err; then rounds of drawing the strokes into the views, moving them and simplifying the
-// graph, until nothing changes; and the same once more with what is found in the edgels that are left. With siblings of the part, their
-// family's strokes, moved onto the edgels, come first, and the rest is for edgels that are left.
+// the cameras err; then rounds of drawing the strokes into the views, moving them and simplifying
+// the graph, until nothing changes; and the same once more with what is found in the edgels that
+// are left. With siblings of the part, their family's strokes, moved onto the edgels, come first,
+// and the rest is for edgels that are left.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);

@@ -22,6 +22,8 @@ constexpr double kLoose = 3;         // times the offsets, which do not reach be
 constexpr double kLowShare = 0.4;    // of the edgels: strokes that explain less may be accidents
 constexpr double kChanceShare = 0.2;  // and these are compared with accidents
 constexpr double kTimesChance = 2;
+constexpr double kNoWorse = 0.9;     // times the edgels that are explained, for cameras to move;
+constexpr double kBetter = 1.1;  // among things, whose few strokes fit any cameras, more must be
 constexpr double kUnfit = 0.3;       // times what strokes explain of the usual view
 constexpr double kMovedPx = 0.3;     // strokes are lifted again
 constexpr int kFewestViews = 3;
@@ -31,6 +33,9 @@ struct Posed {
   EdgeWorld world;
   Sketch sketch;
 };
+
+// Then most edges in the images are no object's, and the share that strokes explain tells nothing.
+bool stands_among_things(const EdgeWorld& world) { return bool(world.object.table); }
 
 Observation look(const Posed& posed, double reach_px) {
   MatchOptions match;
@@ -224,14 +229,15 @@ double chance_share(const EdgeWorld& world, const ReconstructOptions& options) {
 }
 
 void check_agreement(const Posed& posed, double share, const ReconstructOptions& options) {
-  if (!(share < kLowShare)) return;
+  if (!(share < kLowShare) || stands_among_things(posed.world)) return;
   const double chance = chance_share(posed.world, options);
   if (share > kTimesChance * chance) return;
   char text[240];
-  std::snprintf(text, sizeof text,
-                "expected poses and images that agree, found curves for %.1f %% of the edges of the "
-                "images, as many as by accident (%.1f %%): poses and images contradict each other",
-                100 * share, 100 * chance);
+  std::snprintf(
+      text, sizeof text,
+      "expected poses and images that agree, found curves for %.1f %% of the edges of the "
+      "images, as many as by accident (%.1f %%): poses and images contradict each other",
+      100 * share, 100 * chance);
   throw TooLittleError(text);
 }
 
@@ -255,7 +261,7 @@ void refine_all(const Misfit& off, double share, const ReconstructOptions& optio
   const std::vector<View> stated = posed->world.views;
   CameraPrior prior = prior_of(off);
   RunReport aside;
-  if (share < kLowShare) {
+  if (share < kLowShare && !stands_among_things(posed->world)) {
     for (const int factor : {4, 2})
       posed->world = coarse_to_fine(posed->world, factor, stated, options, &prior, progress);
     posed->sketch = strokes_of(posed->world, options, &aside, progress);
@@ -289,17 +295,23 @@ PosedStrokes pose_and_fit(EdgeWorld world, const ReconstructOptions& options, Ru
   if (progress) {
     char text[160];
     std::snprintf(text, sizeof text, "cameras: strokes explain %.0f %%, are off by %.3f px%s",
-                  100 * shares.share, off.offset_px, off.focal ? ", another focal length fits" : "");
+                  100 * shares.share, off.offset_px,
+                  off.focal ? ", another focal length fits" : "");
     progress->note(text);
   }
-  const bool low = shares.share < kChanceShare;
+  const bool low = shares.share < kChanceShare && !stands_among_things(posed.world);
   const bool refining = able && (off.poses || off.focal || low || options.refine_poses == "on");
   bool again = false;
   if (refining) {
+    const Posed stated = posed;
+    const double before = shares.share;
     Stage stage("poses", 0, report, progress);
     refine_all(off, shares.share, options, report, progress, &posed);
     shares = explained(posed);
-    again = true;
+    again = options.refine_poses == "on" ||
+            shares.share > (stands_among_things(posed.world) ? kBetter : kNoWorse) * before;
+    if (!again) posed = stated, shares = explained(posed);
+    stage.result(again ? "cameras moved" : "stated cameras fit as well");
   }
   if (able && shares.share > 0) again |= leave_out(shares, report, progress, &posed);
   if (again) {

@@ -28,8 +28,8 @@ struct Samples {
 };
 Samples evaluate_samples(const Sketch& sketch, const SampleLayout& layout);
 
-/// Derivative of a point of a curve by its control points, x y z each, in the order of StrokeKind; the
-/// columns that are left over are zero.
+/// Derivative of a point of a curve by its control points, x y z each, in the order of StrokeKind;
+/// the columns that are left over are zero.
 using PointJacobian = Eigen::Matrix<double, 3, 12>;
 PointJacobian point_jacobian(StrokeKind kind, const ControlPoints& controls, double t);
 

@@ -56,8 +56,8 @@ PosedStrokes posed(const std::vector<View>& stated, const std::vector<View>& tru
   return pose_and_fit(make_edge_world(stated, pictures(truth)), options, report, nullptr);
 }
 
-// Of sides and diagonals of what was found to what is true: largest distance after a shift, turn and
-// scale.
+// Of sides and diagonals of what was found to what is true: largest distance after a shift, turn
+// and scale.
 double shape_error(const Sketch& found) {
   const std::vector<Polyline> truth = house();
   Eigen::Matrix3Xd from(3, 0), to(3, 0);
@@ -197,7 +197,8 @@ TEST(RefinePoses, ARenderedPartWithPoseNoiseLosesLittle) {
   const Reconstruction refined = reconstruct(scene, {}, nullptr);
   ASSERT_EQ(refined.refined.size(), 24u);
   const double better = f_at(score(refined.sketch, folder.path()).fine, 0.005);
-  EXPECT_GT(better, f_at(score(reconstruct(scene, off, nullptr).sketch, folder.path()).fine, 0.005));
+  EXPECT_GT(better,
+            f_at(score(reconstruct(scene, off, nullptr).sketch, folder.path()).fine, 0.005));
 }
 
 }  // namespace
