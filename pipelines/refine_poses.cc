@@ -49,7 +49,11 @@ EdgeWorld refreshed(EdgeWorld world) {
   const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
                                   [](const EdgelMap& m) { return !m.mask.empty(); });
   if (!masked) return world;
-  return make_edge_world(std::move(world.views), std::move(world.maps));
+  const ObjectRegion object = world.object;
+  EdgeWorld out = make_edge_world(std::move(world.views), std::move(world.maps));
+  out.object = object;
+  if (!object.box.isEmpty()) out.bounds = object.box;
+  return out;
 }
 
 Sketch strokes_of(const EdgeWorld& world, const ReconstructOptions& options, RunReport* report,
