@@ -56,7 +56,7 @@ if [ "$tool" = parallel ]; then
 fi
 
 slurm=$(mktemp -d)  # a short path: of sockets
-trap '"$source/scripts/slurm/one_node.sh" stop "$slurm"; rm -rf "$slurm"' EXIT
+trap '"$source/scripts/slurm/one_node.sh" stop "$slurm"; rm -rf "$slurm" || { sleep 2; rm -rf "$slurm"; } || true' EXIT
 environment=$("$source/scripts/slurm/one_node.sh" start "$slurm" 2>"$folder/slurm.err") ||
   skip "Slurm does not start here: $(tail -n 1 "$folder/slurm.err")"
 eval "$environment"
