@@ -241,7 +241,10 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   const double margin = options.margin_px * footprint;
   const std::vector<Vector3d> points = borne_out(all, footprint, options);
   if (points.empty() || cameras.empty()) return region;
-  region.box = box_of(points, margin);
+  // Without a table nothing tells things from the object: all points may be of it.
+  std::vector<Vector3d> any;
+  for (const EdgePoint& p : all) any.push_back(p.position);
+  region.box = box_of(any, options.reach_px * footprint);
   const std::optional<Plane> table = find_table(points, cameras, footprint, options);
   if (!table) return region;
   const Vector3d x = table->normal().unitOrthogonal();

@@ -100,17 +100,39 @@ TEST(ObjectRegion, TheRegionTurnsAndGrowsWithTheScene) {
     EXPECT_EQ(a.contains(p.position), b.contains(move(p.position))) << p.position.transpose();
 }
 
-TEST(ObjectRegion, WithoutATableEverythingThatIsBorneOutBelongsToTheObject) {
+TEST(ObjectRegion, WithoutATableEverythingMayBelongToTheObject) {
   std::vector<EdgePoint> points;
   for (const Polyline& e : cube_edges({0.1, 0.1, 0}, 0.8)) add_segment(e[0], e[1], 9, &points);
   std::vector<Vector3d> around;
   for (const View& v : ring_of_views(20, kMiddle, 3)) around.push_back(v.center_in_world());
-  const size_t of_cube = points.size();
   add_accidents(50, &points);
   const ObjectRegion r = find_object(points, around, kMiddle, 1.2, kPixel, {});
   EXPECT_FALSE(r.table);
-  for (size_t i = 0; i < of_cube; ++i) EXPECT_TRUE(r.contains(points[i].position));
-  EXPECT_FALSE(r.contains({1.5, 0.5, 0.5}));
+  for (const EdgePoint& p : points) EXPECT_TRUE(r.contains(p.position));
+}
+
+TEST(ObjectRegion, RingsOnATableAreWhole) {
+  for (const double radius_px : {50.0, 100.0}) {
+    const double radius = radius_px * kPixel;
+    std::vector<EdgePoint> points;
+    for (double x = -1; x < 2.2; x += 0.16)
+      if (std::abs(x - 0.5) > radius + 0.02) add_segment({x, -1, 0}, {x, 2, 0}, 9, &points);
+    const int n = int(2 * M_PI * radius_px / 12);  // a point in twelve pixels
+    std::vector<Vector3d> ring;
+    for (int i = 0; i < n; ++i) {
+      const double a = 2 * M_PI * i / n;
+      EdgePoint p;
+      p.position = Vector3d(0.5 + radius * std::cos(a), 0.5 + radius * std::sin(a), 0.4);
+      p.tangent = Vector3d(-std::sin(a), std::cos(a), 0);
+      p.views = 7;
+      points.push_back(p);
+      ring.push_back(p.position);
+    }
+    const ObjectRegion r = find_object(points, cameras(), kMiddle, 1.2, kPixel, {});
+    ASSERT_TRUE(r.table);
+    for (const Vector3d& x : ring) EXPECT_TRUE(r.contains(x)) << radius_px;
+    EXPECT_LT(r.box.sizes().head<2>().maxCoeff(), 2 * radius + 80 * kPixel);
+  }
 }
 
 TEST(ObjectRegion, OfNothingNothingIsKnown) {
