@@ -70,7 +70,7 @@ std::vector<int> shared_cameras(const std::vector<View>& views) {
   return camera;
 }
 
-ColmapText colmap_text(const std::vector<View>& views) {
+ColmapText colmap_text(const std::vector<View>& views, const std::vector<std::string>& sights) {
   ColmapText out;
   out.cameras = "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
   out.images =
@@ -87,7 +87,7 @@ ColmapText colmap_text(const std::vector<View>& views) {
     char pose[320];
     std::snprintf(pose, sizeof pose, "%zu %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d ", k + 1,
                   q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), camera[k] + 1);
-    out.images += pose + views[k].name + "\n\n";
+    out.images += pose + views[k].name + "\n" + (sights.empty() ? "" : sights[k]) + "\n";
   }
   return out;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/synthetic/write_colmap.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "datasets/colmap_write.h"
 #include "datasets/synthetic/write_truth.h"
 
 namespace sketchsplat {
@@ -20,18 +20,9 @@ std::string printed(const char* format, Values... values) {
   return text;
 }
 
-std::string cameras_text(const View& view) {
-  const Camera& c = view.camera;
-  const bool pinhole = view.lens.is_identity();
-  std::string text = "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
-  text += printed("1 %s %d %d %.12g %.12g %.12g %.12g", pinhole ? "PINHOLE" : "OPENCV", c.width,
-                  c.height, c.fx, c.fy, c.cx + kCorner, c.cy + kCorner);
-  const Lens::Terms& k = view.lens.terms();
-  if (!pinhole) text += printed(" %.12g %.12g %.12g %.12g", k.k1, k.k2, k.p1, k.p2);
-  return text + "\n";
-}
-
-std::string images_text(const std::vector<View>& views, const std::vector<TiePoint>& points) {
+// POINTS2D of each image.
+std::vector<std::string> sights_of(const std::vector<View>& views,
+                                   const std::vector<TiePoint>& points) {
   std::vector<std::string> sights(views.size());
   for (size_t i = 0; i < points.size(); ++i)
     for (const TiePoint::Sight& sight : points[i].sights) {
@@ -39,24 +30,12 @@ std::string images_text(const std::vector<View>& views, const std::vector<TiePoi
       line += printed("%s%.3f %.3f %zu", line.empty() ? "" : " ", sight.pixel.x() + kCorner,
                       sight.pixel.y() + kCorner, i + 1);
     }
-  std::string text =
-      "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
-      "# POINTS2D[] as (X, Y, POINT3D_ID)\n";
-  for (size_t k = 0; k < views.size(); ++k) {
-    const Pose& pose = views[k].cam_from_world;
-    Eigen::Quaterniond q(pose.rotation);
-    if (q.w() < 0) q.coeffs() = -q.coeffs();
-    const Eigen::Vector3d& t = pose.translation;
-    text += printed("%zu %.15g %.15g %.15g %.15g %.15g %.15g %.15g 1 ", k + 1, q.w(), q.x(), q.y(),
-                    q.z(), t.x(), t.y(), t.z());
-    text += views[k].name + "\n" + sights[k] + "\n";
-  }
-  return text;
+  return sights;
 }
 
 std::string points_text(const std::vector<View>& views, const std::vector<TiePoint>& points) {
   std::vector<int> used(views.size(), 0);  // POINTS2D of each image so far
-  std::string text = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n";
+  std::string text;
   for (size_t i = 0; i < points.size(); ++i) {
     const TiePoint& point = points[i];
     int rgb[3];
@@ -75,9 +54,10 @@ std::string points_text(const std::vector<View>& views, const std::vector<TiePoi
 
 void write_colmap(const std::vector<View>& views, const std::vector<TiePoint>& points,
                   const std::string& folder) {
-  write_text(folder + "/cameras.txt", cameras_text(views.at(0)));
-  write_text(folder + "/points3D.txt", points_text(views, points));
-  write_text(folder + "/images.txt", images_text(views, points));
+  const ColmapText model = colmap_text(views, sights_of(views, points));
+  write_text(folder + "/cameras.txt", model.cameras);
+  write_text(folder + "/points3D.txt", model.points + points_text(views, points));
+  write_text(folder + "/images.txt", model.images);
 }
 
 }  // namespace sketchsplat
