@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
+#include <opencv2/imgproc.hpp>
 #include <random>
 
 namespace sketchsplat {
@@ -149,23 +149,17 @@ double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
 }
 
-// Convex hull, counter-clockwise (Andrew, IPL 1979).
-std::vector<Vector2d> convex_hull(std::vector<Vector2d> p) {
-  std::sort(p.begin(), p.end(), [](const Vector2d& a, const Vector2d& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  std::vector<Vector2d> hull;
-  for (int side = 0; side < 2; ++side) {
-    const size_t begin = hull.size();
-    for (const Vector2d& q : p) {
-      while (hull.size() >= begin + 2 && cross(hull[hull.size() - 2], hull.back(), q) <= 0)
-        hull.pop_back();
-      hull.push_back(q);
-    }
-    hull.pop_back();
-    std::reverse(p.begin(), p.end());
-  }
-  return hull;
+// Counter-clockwise.
+std::vector<Vector2d> convex_hull(const std::vector<Vector2d>& places) {
+  if (places.empty()) return {};
+  std::vector<cv::Point2f> points;  // about the first: floats are fine enough then
+  for (const Vector2d& p : places)
+    points.emplace_back(float(p.x() - places[0].x()), float(p.y() - places[0].y()));
+  std::vector<int> hull;
+  cv::convexHull(points, hull, false, false);
+  std::vector<Vector2d> out;
+  for (const int k : hull) out.push_back(places[k]);
+  return out;
 }
 
 // Corners of squares around all places: the hull of them is wider by the margin.

@@ -23,12 +23,12 @@ struct RegionOptions {
 };
 
 /// Finds the object that the cameras look at among points on edges. The table is the plane with the
-/// most points over which all cameras and nearly all points are; what stands on it falls apart, seen
-/// from above, into groups, of which the object is the one with the most points near `middle`, where
-/// the optical axes meet. Only points count that have others along their tangents: an object of
-/// nothing but rings of less than some 40 px radius is not found.
-/// Without a table, or with nothing on it, the box is that of all points. `footprint`: world length
-/// of a pixel; `reach`: radius of what the cameras look at, world units.
+/// most points over which all cameras and nearly all points are; what stands on it falls apart,
+/// seen from above, into groups, of which the object is the one with the most points near `middle`,
+/// where the optical axes meet. Only points count that have others along their tangents: an object
+/// of nothing but rings of less than some 40 px radius is not found. Without a table, or with
+/// nothing on it, the box is that of all points. `footprint`: world length of a pixel; `reach`:
+/// radius of what the cameras look at, world units.
 ObjectRegion find_object(const std::vector<EdgePoint>& points,
                          const std::vector<Eigen::Vector3d>& cameras, const Eigen::Vector3d& middle,
                          double reach, double footprint, const RegionOptions& options);
