@@ -8,8 +8,8 @@
 
 namespace sketchsplat {
 
-/// How views show edges. Numbers with which the likelihood is calibrated (a logistic regression of
-/// right and wrong on it has slope 1) on 7536 candidates of 43 synthetic parts, 32 views of 560 px.
+/// How views show edges. Fitted by hand to candidate strokes of synthetic parts, so that a logistic
+/// regression of right and wrong on the likelihood has a slope near 1.
 struct EvidenceModel {
   double sure_rate = 0.88;     ///< views that show an edge that nothing hides, by the hull
   double unsure_rate = 0.3;    ///< the same where something may hide it
