@@ -124,4 +124,11 @@ FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions
   return is_sibling ? start : FamilyStart{};
 }
 
+ReconstructOptions options_after(const FamilyStart& family, ReconstructOptions options) {
+  if (family.sketch.size() == 0) return options;
+  options.rounds = 0;
+  options.final_polish = options.final_polish && family.all_free;
+  return options;
+}
+
 }  // namespace sketchsplat

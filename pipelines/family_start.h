@@ -21,4 +21,8 @@ struct FamilyStart {
 FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,
                            RunReport* report, Progress* progress);
 
+/// The options for what follows: what siblings know needs no rounds, and what no view sees no
+/// polish.
+ReconstructOptions options_after(const FamilyStart& family, ReconstructOptions options);
+
 }  // namespace sketchsplat

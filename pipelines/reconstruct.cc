@@ -31,25 +31,6 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
   warn(text, report, progress);
 }
 
-Sketch moved_in_rounds(Sketch sketch, const EdgeWorld& world,
-                       const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
-                       RunReport* report, Progress* progress) {
-  for (int k = 0; k < options.rounds && !options.deadline.passed(); ++k) {
-    const Round round = run_round(sketch, world, targets, options, report, progress);
-    sketch = round.sketch;
-    if (options.simplify && !round.changed) break;
-  }
-  return sketch;
-}
-
-// What siblings know needs no rounds, and what no view sees no polish.
-ReconstructOptions after_family(ReconstructOptions options, const FamilyStart& family) {
-  if (family.sketch.size() == 0) return options;
-  options.rounds = 0;
-  options.final_polish = options.final_polish && family.all_free;
-  return options;
-}
-
 }  // namespace
 
 // The method. Images become edgels, edgels points in space, points strokes, and these tell whether
@@ -68,7 +49,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   const EdgeWorld all = detect_scene(scene, detector, tags, options, &report, progress);
   const EdgeWorld near = focus_on_object(all, options, &report, progress);
   const FamilyStart family = start_from_siblings(near, options, &report, progress);
-  const ReconstructOptions last = after_family(options, family);
+  const ReconstructOptions last = options_after(family, options);
   const bool cold = family.sketch.size() == 0;
   const PosedStrokes posed = cold ? pose_and_fit(near, options, &report, progress)
                                   : PosedStrokes{near, family.sketch};
@@ -78,7 +59,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
       cold ? make_targets(world, options.optimize) : std::vector<EdgeTarget>();
   if (cold) {
     sketch = drop_print(sketch, world, *detector, &report, progress);
-    sketch = moved_in_rounds(sketch, world, targets, options, &report, progress);
+    sketch = run_rounds(sketch, world, targets, options, &report, progress);
   }
   sketch = look_again(sketch, world, targets, last, &report, progress);
   sketch = drop_print(sketch, world, *detector, &report, progress);

@@ -19,9 +19,9 @@ namespace sketchsplat {
 EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
                        const ReconstructOptions& options, RunReport* report, Progress* progress);
 
-/// Without masks: finds the object among other things (object_region.h) by the longest edges, and
-/// leaves out edgels that cannot be of it. With masks nothing changes. If the user gave a box, the
-/// object is what lies in it, with masks or without.
+/// Without masks: finds the object among other things (find_object.h) by the most meaningful edges,
+/// and leaves out edgels that cannot be of it. With masks nothing changes. If the user gave a box,
+/// the object is what lies in it, with masks or without.
 EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
                           RunReport* report, Progress* progress);
 
@@ -30,7 +30,7 @@ std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptio
                                   RunReport* report, Progress* progress);
 
 /// How strokes are chosen: at one price and by one least deviation for all that is described, and
-/// with the tolerance that edges of the detector need (--surfel-bias).
+/// with the tolerance that edges of the detector need (--surfel-sigma).
 SelectOptions select_options(const ReconstructOptions& options);
 
 /// Strokes from lifted points: linked to chains, cut into the simplest curves, moved onto the
@@ -43,14 +43,10 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
 Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
                   RunReport* report, Progress* progress);
 
-/// One round: strokes are drawn and moved (optimize), weighed, and the graph is simplified.
-struct Round {
-  Sketch sketch;
-  bool changed = false;  ///< the graph did; positions always do
-};
-Round run_round(const Sketch& sketch, const EdgeWorld& world,
-                const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
-                RunReport* report, Progress* progress);
+/// Rounds, until the graph does not change any more or `options` say so: strokes are drawn and
+/// moved (optimize), weighed, and the graph is simplified.
+Sketch run_rounds(Sketch sketch, const EdgeWorld& world, const std::vector<EdgeTarget>& targets,
+                  const ReconstructOptions& options, RunReport* report, Progress* progress);
 
 /// A second look, at the edgels that no stroke explains. They are few, so fewer views need to agree
 /// on a point, and nothing pulls at what they show. Strokes that come of it are chosen among the
