@@ -5,16 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "datasets/median.h"
+
 namespace sketchsplat {
 namespace {
 
 constexpr double kLeastPixels = 1;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Eigen::Vector3d median_center(const std::vector<View>& views) {
   Eigen::Vector3d center;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/median.h"
 #include "edges/chain.h"
 #include "edges/geometry_places.h"
 #include "edges/geometry_sides.h"
@@ -29,13 +30,6 @@ struct Thresholds {
   double depth_noise = 0;          // of a pixel's depth about its plane [footprints]
 };
 
-double median(std::vector<double>* v) {
-  if (v->empty()) return 0;
-  const auto middle = v->begin() + v->size() / 2;
-  std::nth_element(v->begin(), middle, v->end());
-  return *middle;
-}
-
 // Steps and turns where there is none to speak of. `crease_deg`: the least turn that is an edge.
 Thresholds measure_noise(const GeometryFields& f, double crease_deg, const GeometryOptions& options,
                          GeometryNoise* noise) {
@@ -57,13 +51,13 @@ Thresholds measure_noise(const GeometryFields& f, double crease_deg, const Geome
       residuals.push_back(unit * a.residual / a.inverse);
     }
   GeometryNoise measured;
-  measured.jump_px = median(&jumps) / 0.6745;               // half-normal
-  measured.crease_deg = median(&turns) / 1.1774 / kDegree;  // Rayleigh
+  measured.jump_px = median(jumps) / 0.6745;               // half-normal
+  measured.crease_deg = median(turns) / 1.1774 / kDegree;  // Rayleigh
   if (noise) *noise = measured;
   Thresholds t;
   t.jump_px = std::max(options.jump_px, options.noise * measured.jump_px);
   t.crease = kDegree * std::max(crease_deg, options.noise * measured.crease_deg);
-  t.depth_noise = median(&residuals);
+  t.depth_noise = median(residuals);
   return t;
 }
 

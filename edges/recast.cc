@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "edges/recast.h"
 
+#include <array>
 #include <utility>
 
 #include "edges/undistort.h"
@@ -10,6 +11,17 @@ namespace {
 
 constexpr double kLookupPx = 4.0;  // as the detectors'
 constexpr int kShortest = 3;       // edgels that still have a direction
+
+// Whether edgels lie where they lay.
+bool same_image(const View& a, const View& b) {
+  const Camera &p = a.camera, &q = b.camera;
+  const Lens::Terms &l = a.lens.terms(), &m = b.lens.terms();
+  const auto all = [](const Lens::Terms& t) {
+    return std::array<double, 8>{t.k1, t.k2, t.p1, t.p2, t.k3, t.k4, t.k5, t.k6};
+  };
+  return p.fx == q.fx && p.fy == q.fy && p.cx == q.cx && p.cy == q.cy &&
+         a.lens.model() == b.lens.model() && all(l) == all(m);
+}
 
 EdgelMap coarser(const EdgelMap& map, int factor) {
   EdgelMap out;
@@ -39,7 +51,8 @@ EdgeWorld recast(EdgeWorld world, std::vector<View> views) {
   for (int v = 0; v < n; ++v) {
     const View& from = world.views[v];
     EdgelMap& map = world.maps[v];
-    if (!from.lens.is_identity() || !views[v].lens.is_identity())
+    const bool lens = !from.lens.is_identity() || !views[v].lens.is_identity();
+    if (lens && !same_image(from, views[v]))
       map = undistort_edgels(distort_edgels(std::move(map), from), views[v], 1, kLookupPx);
     world.plane_normal[v] = plane_normals(views[v], map);
   }

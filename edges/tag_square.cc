@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "datasets/median.h"
 #include "edges/tag_edges.h"
 #include "sketches/similarity.h"
 
@@ -38,12 +39,6 @@ constexpr int kMinChain = 3;
 constexpr double kLookupPx = 4;       // as the detectors'
 
 const Vector2d kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 // Where the view's image shows a place of the tag, and how that moves with it.
 bool seen_at(const View& view, const Vector3d& world, Vector2d* image,

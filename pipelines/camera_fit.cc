@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "datasets/median.h"
 #include "sketches/curve.h"
 
 namespace sketchsplat {
@@ -42,13 +43,6 @@ struct Linear {
   Matrix<double, kShared, 1> shared = Matrix<double, kShared, 1>::Zero();
 };
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const size_t k = values.size() / 2;
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[k];
-}
-
 // Root mean square distance of the samples' images from that of the middle, in each view.
 std::vector<double> image_radii(const Observation& o, const EdgeWorld& world,
                                 const Vector3d& middle) {
@@ -65,7 +59,7 @@ std::vector<double> image_radii(const Observation& o, const EdgeWorld& world,
     radius.push_back(count[v] > 0 ? std::max(kLeastRadius, std::sqrt(sum[v] / count[v])) : 0);
     if (count[v] > 0) known.push_back(radius[v]);
   }
-  const double usual = std::max(kLeastRadius, median_of(known));
+  const double usual = std::max(kLeastRadius, median(known));
   for (double& r : radius)
     if (!(r > 0)) r = usual;
   return radius;
@@ -173,9 +167,9 @@ void System::weigh() {
   std::vector<double> within, common;
   for (size_t i = 0; i < rows_.size(); ++i)
     within.push_back(std::abs(d[i] - sum[rows_[i].offset] / weight[rows_[i].offset]));
-  scatter_ = std::max(kLeastSigma, 1.4826 * median_of(within));
+  scatter_ = std::max(kLeastSigma, 1.4826 * median(within));
   for (int k = 0; k < offsets_; ++k) common.push_back(std::abs(sum[k] / weight[k]));
-  const double shared = std::max(kLeastSigma, 1.4826 * median_of(common));
+  const double shared = std::max(kLeastSigma, 1.4826 * median(common));
   for (Row& row : rows_) {
     const double r = sum[row.offset] / weight[row.offset] / (kBiweight * shared);
     row.weight *= r * r < 1 ? std::pow(1 - r * r, 2) : 0;
@@ -323,7 +317,7 @@ double System::offset_px() const {
     weight[rows_[i].offset] += rows_[i].match;
   }
   for (int k = 0; k < offsets_; ++k) offset.push_back(std::abs(sum[k] / weight[k]));
-  return 1.4826 * median_of(offset);
+  return 1.4826 * median(offset);
 }
 
 void System::solve(int steps) {
@@ -380,12 +374,14 @@ CameraFit System::result(const Sketch& joined) {
   std::vector<Linear> rows;
   linearise(&rows);
   assemble(rows, 0);
-  const Eigen::LDLT<MatrixXd> factors = hessian_.ldlt();
-  for (int k = 0; k < cameras_.cameras(); ++k) {
-    const int i = cameras_.shared_column(k);
-    const double variance = factors.solve(VectorXd::Unit(cameras_.size(), i))[i];
-    out.focal.push_back(now_.cameras[i] * cameras_.focal_unit(k));
-    out.focal_sigma.push_back(std::sqrt(std::max(0.0, variance)) * cameras_.focal_unit(k));
+  const int poses = kPose * cameras_.views(), shared = cameras_.size() - poses;
+  if (shared > 0) {
+    const VectorXd value = now_.cameras.tail(shared);
+    const MatrixXd cross = hessian_.topRightCorner(poses, shared);
+    const VectorXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross * value);
+    out.shared_gain = value.dot(hessian_.bottomRightCorner(shared, shared) * value) -
+                      (cross * value).dot(follow);
+    out.shared = shared;
   }
   return out;
 }

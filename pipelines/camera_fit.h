@@ -17,8 +17,9 @@ struct CameraFit {
   double after_px = 0;     ///< and after it
   int offsets = 0;         ///< number of these: a stroke in a view
   int unknowns = 0;        ///< of the cameras
-  std::vector<double> focal, focal_sigma;  ///< per shared camera: relative change, its standard
-                                           ///< deviation if edgels err as they scatter
+  double shared_gain = 0;  ///< by which the sum of squares, in variances, is smaller because what
+                           ///< the views of a camera share (focal length, centre, lens) has moved
+  int shared = 0;          ///< number of such unknowns
   std::vector<double> radius_px;           ///< per view: of the object's image
 };
 

@@ -75,6 +75,7 @@ CameraUnknowns::CameraUnknowns(const std::vector<View>& stated, const Eigen::Vec
 }
 
 void CameraUnknowns::list_shared(const View& view, double radius_px, const CameraPrior& prior) {
+  if (!prior.shared) return;
   const Camera& c = view.camera;
   const auto add = [&](int intrinsic, double unit, double sigma_px) {
     unit_[Eigen::Index(intrinsic_.size())] = unit;
@@ -174,7 +175,7 @@ bool CameraUnknowns::image(int v, const Eigen::Vector3d& point, Eigen::Vector2d*
   out->shared.setZero();
   const int k = camera_[v];
   Eigen::Matrix<double, 2, 8> terms;
-  if (!view.lens.is_identity() || intrinsic_[first_[k + 1] - 1] >= kTerm)
+  if (num_shared(k) > 0 && intrinsic_[first_[k + 1] - 1] >= kTerm)
     terms = focal.asDiagonal() * view.lens.terms_jacobian(xy);
   for (int i = first_[k]; i < first_[k + 1]; ++i) {
     auto column = out->shared.col(i - first_[k]);

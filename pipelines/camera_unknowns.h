@@ -14,6 +14,7 @@ struct CameraPrior {
   double focal = 0.01;  ///< relative; a tenth of it for the ratio of fx and fy where they differ
   double centre = 0.004;    ///< of the principal point, in image widths
   double lens_px = 2;       ///< by which a term of the distortion moves the corner of the image
+  bool shared = true;       ///< false: focal length, centre and lens are as stated
 };
 
 /// Cameras as unknowns of least squares: six per view about a point of the object, and of each
@@ -43,8 +44,6 @@ class CameraUnknowns {
 
   /// Inverse variance of each unknown.
   const Eigen::VectorXd& information() const { return information_; }
-  /// Relative change of a camera's focal length by its first unknown.
-  double focal_unit(int camera) const { return unit_[first_[camera]]; }
 
   /// Where the image shows a point of the world; with the derivatives by the point, by the pose of
   /// the view and by what its camera shares (num_shared columns). False if it does not.

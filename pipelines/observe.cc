@@ -9,19 +9,13 @@
 #include <set>
 #include <utility>
 
+#include "datasets/median.h"
 #include "sketches/covariance.h"
 
 namespace sketchsplat {
 namespace {
 
 constexpr double kStillPx = 0.25;
-
-double median(std::vector<float>* values) {
-  if (values->empty()) return 0;
-  const size_t k = values->size() / 2;
-  std::nth_element(values->begin(), values->begin() + k, values->end());
-  return (*values)[k];
-}
 
 constexpr int kPlacing = 3;          // views that place a sample
 constexpr double kPlaceReach = 1.5;  // [px] of an edgel, and of the place, from the stroke
@@ -86,15 +80,15 @@ StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, 
   }
   std::vector<float> bias;
   for (std::vector<float>& distances : by_view)
-    if (!distances.empty()) bias.push_back(std::abs(float(median(&distances))));
+    if (!distances.empty()) bias.push_back(std::abs(float(median(distances))));
   s.views = int(bias.size());
-  s.bias_px = median(&bias);
+  s.bias_px = median(bias);
   s.rms_px = s.matches ? std::sqrt(squares / s.matches) : 0;
   s.still = s.matches ? double(still) / s.matches : 0;
   s.outline = s.matches ? double(outline) / s.matches : 0;
   s.cover = s.samples ? double(covered) / s.samples : 0;
-  s.width_px = median(&width);
-  s.strength = median(&strength);
+  s.width_px = median(width);
+  s.strength = median(strength);
   return s;
 }
 

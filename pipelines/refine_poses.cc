@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "datasets/errors.h"
+#include "datasets/median.h"
 #include "edges/recast.h"
 #include "pipelines/camera_fit.h"
+#include "pipelines/explained.h"
 #include "pipelines/stages.h"
 
 namespace sketchsplat {
@@ -17,21 +19,23 @@ namespace {
 constexpr double kReachPx = 2, kSpacingPx = 6;
 constexpr double kOffPx = 0.15;      // strokes of exact cameras have offsets of 0.03 to 0.09 px
 constexpr double kOfScatter = 0.75;  // where edgels are vague, offsets are larger
-constexpr double kSure = 4;          // standard deviations of a focal length that is wrong
+constexpr double kSure = 4;          // standard deviations of a focal length or lens that is wrong
+constexpr double kExactPx = 0.02;    // poses err at least by this
 constexpr double kLoose = 3;         // times the offsets, which do not reach beyond the matches
 constexpr double kLowShare = 0.4;    // of the edgels: strokes that explain less may be accidents
 constexpr double kChanceShare = 0.2;  // and these are compared with accidents
 constexpr double kTimesChance = 2;
+constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be mended
 constexpr double kNoWorse = 0.9;     // times the edgels that are explained, for cameras to move;
-constexpr double kBetter = 1.1;  // among things, whose few strokes fit any cameras, more must be
-constexpr double kUnfit = 0.3;       // times what strokes explain of the usual view
+                                     // none fewer among things, whose few strokes fit any cameras
 constexpr double kMovedPx = 0.3;     // strokes are lifted again
-constexpr int kFewestViews = 3;
+constexpr int kFewestViews = 3, kMostLifts = 5;
 constexpr double kAwry = 0.05;       // of the width of a picture: nothing but accidents fits
 
 struct Posed {
   EdgeWorld world;
   Sketch sketch;
+  RunReport report;  // of how the strokes were found, alone
 };
 
 // Then most edges in the images are no object's, and the share that strokes explain tells nothing.
@@ -56,62 +60,27 @@ EdgeWorld refreshed(EdgeWorld world) {
   return out;
 }
 
-Sketch strokes_of(const EdgeWorld& world, const ReconstructOptions& options, RunReport* report,
-                  Progress* progress) {
+// Strokes anew, in the world as it is.
+void find_strokes(const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  posed->report = {};
   try {
-    return fit_strokes(lift_scene(world, options, report, progress), world, options, report,
-                       progress);
+    posed->sketch = fit_strokes(lift_scene(posed->world, options, &posed->report, progress),
+                                posed->world, options, &posed->report, progress);
   } catch (const TooLittleError&) {
-    return {};
+    posed->sketch = {};
   }
 }
 
-// How much of each view the strokes explain, and of all.
-struct Explained {
-  std::vector<double> edgels, samples;  // shares, of each view
-  double share = 0;                     // of all edgels
-};
-
-Explained explained(const Posed& posed) {
-  const int n = int(posed.world.views.size());
-  Explained out{std::vector<double>(n), std::vector<double>(n)};
-  if (posed.sketch.size() == 0) return out;
-  const Observation o = look(posed, kReachPx);
-  std::vector<double> rows(n);
-  for (const SampleMatch& m : o.matches.matches) ++rows[m.view];
-  double all = 0, edgels = 0;
-  for (int v = 0; v < n; ++v) {
-    const View& view = posed.world.views[v];
-    double shown = 0, depth;
-    for (int i = 0; i < o.samples.position.cols(); ++i)
-      shown += view.camera.contains(view.project(o.samples.position.col(i), &depth)) && depth > 0;
-    const double here = double(posed.world.maps[v].edgels.size());
-    out.edgels[v] = kSpacingPx * rows[v] / std::max(1.0, here);
-    out.samples[v] = rows[v] / std::max(1.0, shown);
-    all += kSpacingPx * rows[v], edgels += here;
-  }
-  out.share = all / std::max(1.0, edgels);
-  return out;
-}
-
-double median_of(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-std::vector<char> unfit_views(const Explained& shares) {
-  const double edgels = kUnfit * median_of(shares.edgels);
-  const double samples = kUnfit * median_of(shares.samples);
-  std::vector<char> out;
-  for (size_t v = 0; v < shares.edgels.size(); ++v)
-    out.push_back(shares.edgels[v] < edgels && shares.samples[v] < samples);
-  return out;
+// That a focal length, centre or lens is wrong: the gain is that of chance, distributed as
+// chi squared with so many degrees of freedom, if none is.
+bool is_sure(const CameraFit& fit) {
+  return fit.shared_gain > fit.shared + kSure * std::sqrt(2.0 * fit.shared);
 }
 
 // What the first strokes say of the cameras.
 struct Misfit {
-  double offset_px = 0;
-  bool poses = false, focal = false;
+  double offset_px = 0, pose_px = 0;   // of strokes in views; and without what views share
+  bool poses = false, shared = false;  // shared: focal length, centre or lens
   int rows = 0;
 };
 
@@ -126,16 +95,19 @@ Misfit misfit(const Posed& posed) {
   const CameraFit as_stated = fit_cameras(posed.sketch, o, posed.world, stated, prior, 0);
   out.offset_px = as_stated.before_px;
   out.poses = out.offset_px > std::max(kOffPx, kOfScatter * as_stated.scatter_px);
-  prior.pose_px = std::max(0.02, out.offset_px);
+  prior.pose_px = kExactPx;
   const CameraFit fit = fit_cameras(posed.sketch, o, posed.world, stated, prior, 3);
-  for (size_t k = 0; k < fit.focal.size(); ++k)
-    out.focal |= std::abs(fit.focal[k]) > kSure * fit.focal_sigma[k];
+  out.shared = is_sure(fit);
+  out.pose_px = out.shared ? fit.after_px : out.offset_px;
   return out;
 }
 
+// What the views of a camera share moves only if the strokes are sure of it: where a flat object
+// does not tell, a wrong focal length would change the scale, a wrong centre the place.
 CameraPrior prior_of(const Misfit& misfit) {
   CameraPrior prior;
-  prior.pose_px = std::max(0.02, (misfit.poses ? kLoose : 1) * misfit.offset_px);
+  prior.shared = misfit.shared;
+  prior.pose_px = std::max(kExactPx, (misfit.poses ? kLoose : 1) * misfit.pose_px);
   return prior;
 }
 
@@ -168,7 +140,7 @@ double moved_px(const Sketch& sketch, const std::vector<View>& a, const std::vec
                  .squaredNorm();
     moved.push_back(std::sqrt(sum / std::max<int>(1, int(samples.position.cols()))));
   }
-  return median_of(moved);
+  return median(moved);
 }
 
 // Cameras that pictures of 1 / factor the size make, for those of full size.
@@ -193,13 +165,13 @@ std::vector<View> shrunk(std::vector<View> views, int factor) {
 EdgeWorld coarse_to_fine(const EdgeWorld& world, int factor, const std::vector<View>& stated,
                          const ReconstructOptions& options, CameraPrior* prior,
                          Progress* progress) {
-  RunReport aside;
-  Posed posed{coarser(world, factor), {}};
-  posed.sketch = strokes_of(posed.world, options, &aside, progress);
+  Posed posed{coarser(world, factor), {}, {}};
+  find_strokes(options, progress, &posed);
   const Misfit off = misfit(posed);
   if (off.rows == 0) return world;
   CameraPrior here = prior_of(off);
   here.pose_px = std::max(here.pose_px, prior->pose_px / factor);
+  here.shared = prior->shared;
   here.lens_px /= factor;
   prior->pose_px = here.pose_px * factor;
   refine(shrunk(stated, factor), here, &posed);
@@ -226,23 +198,30 @@ double chance_share(const EdgeWorld& world, const ReconstructOptions& options) {
     views[v].camera.cx += by * std::cos(golden * double(v));
     views[v].camera.cy += by * std::sin(golden * double(v));
   }
-  RunReport aside;
-  Posed awry{recast(world, std::move(views)), {}};
-  awry.sketch = strokes_of(awry.world, options, &aside, nullptr);
-  return explained(awry).share;
+  Posed awry{recast(world, std::move(views)), {}, {}};
+  find_strokes(options, nullptr, &awry);
+  return explained(awry.sketch, awry.world).share;
 }
 
-void check_agreement(const Posed& posed, double share, const ReconstructOptions& options) {
+// Of what strokes explain now, and explained of the cameras as stated: cameras that had to move
+// must have shown something before, or show much now, for some cameras fit any few edges.
+void check_agreement(const Posed& posed, double share, bool moved, double as_stated,
+                     const ReconstructOptions& options) {
   if (!(share < kLowShare) || stands_among_things(posed.world)) return;
-  const double chance = chance_share(posed.world, options);
-  if (share > kTimesChance * chance) return;
-  char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "expected poses and images that agree, found curves for %.1f %% of the edges of the "
-      "images, as many as by accident (%.1f %%): poses and images contradict each other",
-      100 * share, 100 * chance);
-  throw TooLittleError(text);
+  char found[120];
+  if (moved && as_stated < kLeastShare) {
+    std::snprintf(found, sizeof found,
+                  "%.1f %% of the edges of the images, %.1f %% if cameras move", 100 * as_stated,
+                  100 * share);
+  } else {
+    const double chance = chance_share(posed.world, options);
+    if (share > kTimesChance * chance) return;
+    std::snprintf(found, sizeof found,
+                  "%.1f %% of the edges of the images, as many as by accident (%.1f %%)",
+                  100 * share, 100 * chance);
+  }
+  throw TooLittleError("expected poses and images that agree, found curves for " +
+                       std::string(found) + ": poses and images contradict each other");
 }
 
 // Names the views that do not fit; false if there are none.
@@ -259,76 +238,116 @@ bool leave_out(const Explained& shares, RunReport* report, Progress* progress, P
   return true;
 }
 
-// Moves the cameras, and lifts again while that moves them.
-void refine_all(const Misfit& off, double share, const ReconstructOptions& options,
-                RunReport* report, Progress* progress, Posed* posed) {
-  const std::vector<View> stated = posed->world.views;
-  CameraPrior prior = prior_of(off);
-  RunReport aside;
-  if (share < kLowShare && !stands_among_things(posed->world)) {
-    for (const int factor : {4, 2})
-      posed->world = coarse_to_fine(posed->world, factor, stated, options, &prior, progress);
-    posed->sketch = strokes_of(posed->world, options, &aside, progress);
-  }
-  double after = 0;
-  for (int round = 0; round < 3; ++round) {
+// Whether the strokes, once the poses fit, are sure that what views share is wrong.
+bool shared_is_wrong(const Posed& posed, const std::vector<View>& stated, CameraPrior prior) {
+  if (posed.sketch.size() == 0) return false;
+  const Observation o = look(posed, kReachPx);
+  if (o.matches.matches.empty()) return false;
+  prior.shared = true;
+  return is_sure(fit_cameras(posed.sketch, o, posed.world, stated, prior, 3));
+}
+
+// Moves cameras and strokes, and lifts again while that moves them; the offsets that are left.
+double settle(const std::vector<View>& stated, const CameraPrior& prior,
+              const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  for (int round = 0;; ++round) {
     const std::vector<View> before = posed->world.views;
-    after = refine(stated, prior, posed);
+    const double after = refine(stated, prior, posed);
     const double moved =
         moved_px(posed->sketch, before, posed->world.views, posed->world.footprint * kSpacingPx);
-    if (round > 0 && moved < kMovedPx) break;
-    if (round == 2) break;
     posed->world = refreshed(std::move(posed->world));
-    posed->sketch = strokes_of(posed->world, options, &aside, progress);
+    find_strokes(options, progress, posed);
+    if (round == kMostLifts || moved < kMovedPx) return after;
   }
+}
+
+// Poses first; focal length, centre and lens if these do not do it.
+double refine_from(const std::vector<View>& stated, CameraPrior prior,
+                   const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  const double after = settle(stated, prior, options, progress, posed);
+  if (prior.shared || !shared_is_wrong(*posed, stated, prior)) return after;
+  prior.shared = true;
+  return settle(stated, prior, options, progress, posed);
+}
+
+// From the strokes that there are; where these explain little, from those of small pictures, too.
+// The offsets that are left.
+double refine_all(const Misfit& off, const ReconstructOptions& options, Progress* progress,
+                  Posed* posed) {
+  const Posed first = *posed;
+  const std::vector<View>& stated = first.world.views;
+  CameraPrior prior = prior_of(off);
+  const double after = refine_from(stated, prior, options, progress, posed);
+  const double share = explained(posed->sketch, posed->world).share;
+  if (!(share < kLowShare) || stands_among_things(first.world)) return after;
+  Posed other = first;
+  for (const int factor : {4, 2})
+    other.world = coarse_to_fine(other.world, factor, stated, options, &prior, progress);
+  find_strokes(options, progress, &other);
+  const double after_other = refine_from(stated, prior, options, progress, &other);
+  if (!(explained(other.sketch, other.world).share > share)) return after;
+  *posed = std::move(other);
+  return after_other;
+}
+
+// Cameras that fit, where these ones do not and others explain more; true if they moved.
+bool move_cameras(const Misfit& off, double share, const ReconstructOptions& options,
+                  RunReport* report, Progress* progress, Posed* posed) {
+  const Posed stated = *posed;
+  Stage stage("poses", 0, report, progress);
+  const double after = refine_all(off, options, progress, posed);
+  const double least = (stands_among_things(posed->world) ? 1 : kNoWorse) * share;
+  const bool moved = options.refine_poses == "on" || explained(posed->sketch, posed->world).share > least;
+  if (!moved) *posed = stated;
   report->counts.push_back({"pose_offset_before_px", off.offset_px});
-  report->counts.push_back({"pose_offset_after_px", after});
+  report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
+  stage.result(moved ? "cameras moved" : "stated cameras fit as well");
+  return moved;
+}
+
+void append(const RunReport& from, RunReport* to) {
+  to->stages.insert(to->stages.end(), from.stages.begin(), from.stages.end());
+  to->counts.insert(to->counts.end(), from.counts.begin(), from.counts.end());
+  to->warnings.insert(to->warnings.end(), from.warnings.begin(), from.warnings.end());
+}
+
+void tell(const Explained& shares, const Misfit& off, Progress* progress) {
+  if (!progress) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "cameras: strokes explain %.0f %%, are off by %.3f px%s",
+                100 * shares.share, off.offset_px,
+                off.shared ? ", another focal length or lens fits" : "");
+  progress->note(text);
 }
 
 }  // namespace
 
 PosedStrokes pose_and_fit(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
                           Progress* progress) {
-  RunReport first = *report;
-  Posed posed{std::move(world), {}};
-  posed.sketch = strokes_of(posed.world, options, &first, progress);
-  Explained shares = explained(posed);
+  Posed posed{std::move(world), {}, {}};
+  find_strokes(options, progress, &posed);
+  Explained shares = explained(posed.sketch, posed.world);
   const bool able = options.refine_poses != "off" && posed.world.views.size() >= kFewestViews &&
                     options.detector != "2dgs-sn";
   const Misfit off = able ? misfit(posed) : Misfit{};
-  if (progress) {
-    char text[160];
-    std::snprintf(text, sizeof text, "cameras: strokes explain %.0f %%, are off by %.3f px%s",
-                  100 * shares.share, off.offset_px,
-                  off.focal ? ", another focal length fits" : "");
-    progress->note(text);
-  }
+  tell(shares, off, progress);
   const bool low = shares.share < kChanceShare && !stands_among_things(posed.world);
-  const bool refining = able && (off.poses || off.focal || low || options.refine_poses == "on");
-  bool again = false;
-  if (refining) {
-    const Posed stated = posed;
-    const double before = shares.share;
-    Stage stage("poses", 0, report, progress);
-    refine_all(off, shares.share, options, report, progress, &posed);
-    shares = explained(posed);
-    again = options.refine_poses == "on" ||
-            shares.share > (stands_among_things(posed.world) ? kBetter : kNoWorse) * before;
-    if (!again) posed = stated, shares = explained(posed);
-    stage.result(again ? "cameras moved" : "stated cameras fit as well");
+  const double as_stated = shares.share;
+  bool moved = false;
+  if (able && (off.poses || off.shared || low || options.refine_poses == "on")) {
+    moved = move_cameras(off, shares.share, options, report, progress, &posed);
+    shares = explained(posed.sketch, posed.world);
   }
-  if (able && shares.share > 0) again |= leave_out(shares, report, progress, &posed);
-  if (again) {
-    first = *report;
-    posed.world = refreshed(std::move(posed.world));
-    posed.sketch = strokes_of(posed.world, options, &first, progress);
-    shares = explained(posed);
+  if (able && shares.share > 0 && leave_out(shares, report, progress, &posed)) {
+    moved = true;
+    find_strokes(options, progress, &posed);
+    shares = explained(posed.sketch, posed.world);
   }
-  check_agreement(posed, shares.share, options);
-  *report = std::move(first);
+  check_agreement(posed, shares.share, moved, as_stated, options);
+  append(posed.report, report);
   if (posed.sketch.size() == 0)
     throw TooLittleError("expected edges that several views see, found none that agree");
-  return {std::move(posed.world), std::move(posed.sketch), again};
+  return {std::move(posed.world), std::move(posed.sketch), moved};
 }
 
 }  // namespace sketchsplat

@@ -128,6 +128,22 @@ TEST(CameraUnknowns, ValuesMakeTheCamerasThatTheyAreMadeOf) {
   EXPECT_LT((cameras.values_of(cameras.current()) - value).norm(), 1e-8);
 }
 
+TEST(CameraUnknowns, WhatViewsShareStaysIfItIsNoUnknown) {
+  std::vector<View> views = ring_of_views(3, kMiddle, 3);
+  for (View& v : views) v.lens = Lens(LensModel::kOpencv, {-0.1, 0.02, 0.003, -0.002});
+  CameraPrior prior;
+  prior.shared = false;
+  CameraUnknowns cameras(views, kMiddle, {60, 60, 60}, prior);
+  EXPECT_EQ(cameras.size(), 3 * 6);
+  EXPECT_EQ(cameras.num_shared(0), 0);
+  cameras.set(VectorXd::Ones(cameras.size()));
+  EXPECT_EQ(cameras.current()[1].camera.fx, views[1].camera.fx);
+  EXPECT_EQ(cameras.current()[1].lens.terms().k1, -0.1);
+  CameraUnknowns::Derivatives by;
+  Vector2d at;
+  EXPECT_TRUE(cameras.image(1, {0.7, 0.3, 0.6}, &at, &by));
+}
+
 TEST(RefinePoses, ExactCamerasAreLeftAlone) {
   const std::vector<View> views = ring_of_views(20, kMiddle, 3);
   RunReport a, b;
@@ -139,7 +155,7 @@ TEST(RefinePoses, ExactCamerasAreLeftAlone) {
 
 TEST(RefinePoses, CamerasThatErrComeBack) {
   const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
-  for (const double px : {0.7, 2.0}) {
+  for (const double px : {0.7, 2.0, 3.0}) {
     RunReport report, other;
     const std::vector<View> stated = jogged(truth, px);
     const PosedStrokes out = posed(stated, truth, &report);
@@ -148,6 +164,19 @@ TEST(RefinePoses, CamerasThatErrComeBack) {
     EXPECT_GE(out.sketch.size(), 20) << px;
     EXPECT_LT(shape_error(out.sketch), 0.003) << px;  // half a pixel
   }
+}
+
+TEST(RefinePoses, PosesThatErrChangeNeitherScaleNorPlace) {
+  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  RunReport report;
+  const PosedStrokes out = posed(jogged(truth, 2), truth, &report);
+  ASSERT_TRUE(out.refined);
+  EXPECT_NEAR(out.world.views[0].camera.fx, truth[0].camera.fx, 0.5);
+  double worst = 0;
+  for (int s = 0; s < out.sketch.size(); ++s)
+    for (const double t : {0.1, 0.5, 0.9})
+      worst = std::max(worst, distance_to(house(), point_at(out.sketch, s, t)));
+  EXPECT_LT(worst, 0.006) << "one pixel, where single cameras err by two";
 }
 
 TEST(RefinePoses, AWrongFocalLengthIsFound) {
@@ -180,6 +209,25 @@ TEST(RefinePoses, CamerasInTheWrongOrderAreRefused) {
   }
   RunReport report;
   EXPECT_THROW(posed(stated, truth, &report), TooLittleError);
+}
+
+TEST(RefinePoses, RenderedPosesInTheWrongOrderAreRefusedInOneLine) {
+  const TempFolder folder;
+  SynthesizeOptions part;
+  part.part = "l-bracket";
+  part.rig.views = 16, part.rig.resolution = 300;
+  part.outputs = "none";
+  write_scene(synthesize(part), folder.path());
+  Scene scene = open_scene(folder.path());
+  const std::vector<View> truth = scene.views;
+  for (size_t k = 0; k < truth.size(); ++k)
+    scene.views[k].cam_from_world = truth[(7 * k + 3) % truth.size()].cam_from_world;
+  try {
+    reconstruct(scene, {}, nullptr);
+    ADD_FAILURE() << "curves of poses that belong to other images";
+  } catch (const TooLittleError& e) {
+    EXPECT_THAT(e.what(), testing::EndsWith("poses and images contradict each other"));
+  }
 }
 
 TEST(RefinePoses, ARenderedPartWithPoseNoiseLosesLittle) {
