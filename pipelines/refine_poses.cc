@@ -297,7 +297,8 @@ bool move_cameras(const Misfit& off, double share, const ReconstructOptions& opt
   Stage stage("poses", 0, report, progress);
   const double after = refine_all(off, options, progress, posed);
   const double least = (stands_among_things(posed->world) ? 1 : kNoWorse) * share;
-  const bool moved = options.refine_poses == "on" || explained(posed->sketch, posed->world).share > least;
+  const bool moved =
+      options.refine_poses == "on" || explained(posed->sketch, posed->world).share > least;
   if (!moved) *posed = stated;
   report->counts.push_back({"pose_offset_before_px", off.offset_px});
   report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
