@@ -12,9 +12,11 @@
 #include <memory>
 
 #include "datasets/errors.h"
+#include "pipelines/atomic_file.h"
 #include "pipelines/batch/run.h"
 #include "pipelines/cli_help.h"
 #include "pipelines/completion.h"
+#include "pipelines/config_file.h"
 #include "pipelines/manual.h"
 #include "pipelines/version.h"
 
@@ -59,6 +61,28 @@ void assign_texts(const std::vector<Field>& fields, const Texts& texts) {
     assign(field, given->second);
     if (field.applied) field.applied();
   }
+}
+
+// What --config names comes first, so that the command line has the last word.
+void assign_all(const CommonOptions& common, const Verb& verb,
+                const std::vector<Field>& common_fields, const Texts& texts,
+                const Texts& common_texts) {
+  assign_texts(common_fields, common_texts);
+  if (!common.config.empty()) {
+    const std::string config = common.config;
+    std::vector<Field> fields = common_fields;
+    fields.insert(fields.end(), verb.fields.begin(), verb.fields.end());
+    try {
+      assign_texts(fields, read_config(config, verb.name, fields));
+    } catch (const UsageError& e) {
+      throw InputError(config, "options as on the command line", e.what());
+    }
+    assign_texts(common_fields, common_texts);
+  }
+  assign_texts(verb.fields, texts);
+  if (common.save_config.empty()) return;
+  const std::string text = config_text(verb.name, verb.fields);
+  write_atomically(common.save_config, [&](std::ostream& out) { out << text; });
 }
 
 void check_required(const Verb& verb, const Texts& texts) {
@@ -175,8 +199,7 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
       refuse_extra(extras[0], known, verb->name);
     }
     check_required(*verb, parser.texts);
-    assign_texts(common_fields.list, parser.common_texts);
-    assign_texts(verb->fields, parser.texts);
+    assign_all(common, *verb, common_fields.list, parser.texts, parser.common_texts);
     if (common.threads > 0) omp_set_num_threads(common.threads);
     Progress progress(progress_mode(common), common.verbose && !common.quiet);
     progress.use_color(Progress::stderr_has_color());

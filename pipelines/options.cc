@@ -235,6 +235,10 @@ void list_fields(CommonOptions* o, Fields* f) {
   f->add("verbose", &o->verbose, "Say more while working").short_name = "v";
   f->add("json", &o->json, "Write results to standard output as JSON");
   f->add("log", &o->log, "FILE", "Add everything that is said to this file, with the time");
+  f->add("config", &o->config, "FILE",
+         "Take options from this file (TOML); those of the command line override them");
+  f->add("save-config", &o->save_config, "FILE",
+         "Write the options that are not at their defaults, for --config");
 }
 
 void list_fields(ReconstructOptions* o, Fields* f) {
