@@ -29,7 +29,7 @@ TEST_P(AbcNef, EdgesAreFoundSharplyAndInFewStrokes) {
       std::string(SKETCHSPLAT_SOURCE_DIR) + "/../shared/data/abc-nef/" + floor.scene;
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "the scene " << floor.scene << " is not beside the sources in shared/data";
-  const Sketch sketch = reconstruct(open_scene(folder), {}, nullptr).sketch;
+  const Sketch sketch = reconstruct_as_ever(open_scene(folder)).sketch;
   EXPECT_TRUE(validate(sketch).empty());
   const Evaluation e = score(sketch, folder);
   EXPECT_GE(f_at(e.fine, 0.005), floor.f5);

@@ -26,7 +26,7 @@ TEST_P(Part, ItsEdgesAreFoundAndNoContourIsTakenForOne) {
   const Expected expected = GetParam();
   const TempFolder folder;
   write_part(expected.part, 30, 400, 1, folder.path());
-  const Sketch sketch = reconstruct(open_scene(folder.path()), {}, nullptr).sketch;
+  const Sketch sketch = reconstruct_as_ever(open_scene(folder.path())).sketch;
   EXPECT_TRUE(validate(sketch).empty());
   const Evaluation e = score(sketch, folder.path());
   EXPECT_GE(f_at(e.fine, 0.005), expected.f5);

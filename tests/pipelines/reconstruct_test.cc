@@ -23,7 +23,7 @@ class BoxHole : public testing::Test {
     folder_ = new TempFolder;
     write_part("box-hole", 24, 400, 2, folder_->path());
     scene_ = new Scene(open_scene(folder_->path()));
-    result_ = new Reconstruction(reconstruct(*scene_, {}, nullptr));
+    result_ = new Reconstruction(reconstruct_as_ever(*scene_));
   }
   static void TearDownTestSuite() {
     delete result_;
@@ -101,7 +101,7 @@ TEST_F(BoxHole, SameBytesAgainAndForAnyNumberOfThreads) {
   const std::string expected = json_of(result_->sketch);
   for (int threads : {1, 2}) {
     omp_set_num_threads(threads);
-    EXPECT_TRUE(json_of(reconstruct(*scene_, {}, nullptr).sketch) == expected) << threads;
+    EXPECT_TRUE(json_of(reconstruct_as_ever(*scene_).sketch) == expected) << threads;
   }
   omp_set_num_threads(before);
 }
@@ -110,7 +110,7 @@ TEST_F(BoxHole, ResultScalesWithTheUnitOfTheScene) {
   for (double unit : {1e-3, 1e3}) {
     Scene scene = *scene_;
     for (View& v : scene.views) v.cam_from_world.translation *= unit;
-    Sketch sketch = reconstruct(scene, {}, nullptr).sketch;
+    Sketch sketch = reconstruct_as_ever(scene).sketch;
     ASSERT_EQ(sketch.size(), result_->sketch.size()) << unit;
     sketch.nodes /= unit;
     sketch.handles /= unit;
@@ -144,7 +144,7 @@ TEST_F(BoxHole, GoesOnWithoutAFrameThatIsTruncatedAndOneThatIsMissing) {
   ASSERT_TRUE(std::filesystem::exists(broken));
   std::filesystem::resize_file(broken, std::filesystem::file_size(broken) / 3);
   std::filesystem::remove(folder.path() + "/color/11_colors.png");
-  const Reconstruction r = reconstruct(open_scene(folder.path()), {}, nullptr);
+  const Reconstruction r = reconstruct_as_ever(open_scene(folder.path()));
   EXPECT_THAT(r.report.warnings,
               testing::UnorderedElementsAre(testing::HasSubstr("5_colors.png"),
                                             testing::HasSubstr("11_colors.png")));
@@ -156,7 +156,7 @@ TEST_F(BoxHole, FewViewsGiveASketchOrAClearRefusal) {
     Scene scene = *scene_;
     scene.views.resize(count);
     try {
-      const Sketch sketch = reconstruct(scene, {}, nullptr).sketch;
+      const Sketch sketch = reconstruct_as_ever(scene).sketch;
       EXPECT_GE(count, 3u);
       EXPECT_TRUE(validate(sketch).empty());
     } catch (const TooLittleError& e) {
@@ -180,9 +180,9 @@ Scene blank_scene(const Scene& like, const TempFolder& folder) {
 TEST_F(BoxHole, PicturesWithoutAnyEdgeAreTooLittle) {
   const TempFolder folder;
   Scene scene = blank_scene(*scene_, folder);
-  EXPECT_THROW(reconstruct(scene, {}, nullptr), TooLittleError);
+  EXPECT_THROW(reconstruct_as_ever(scene), TooLittleError);
   for (View& v : scene.views) std::filesystem::remove(v.image_path);
-  EXPECT_THROW(reconstruct(scene, {}, nullptr), InputError) << "and none at all is an error";
+  EXPECT_THROW(reconstruct_as_ever(scene), InputError) << "and none at all is an error";
 }
 
 TEST_F(BoxHole, NoCurveThatEnoughViewsSeeIsTooLittle) {
@@ -197,7 +197,7 @@ TEST_F(BoxHole, PicturesUnderWrongPosesGiveLessThanThePartOrARefusal) {
   for (size_t i = 0; i < n; ++i)
     scene.views[i].image_path = scene_->views[(i * 7 + 3) % n].image_path;
   try {
-    const Sketch sketch = reconstruct(scene, {}, nullptr).sketch;
+    const Sketch sketch = reconstruct_as_ever(scene).sketch;
     EXPECT_TRUE(validate(sketch).empty());
     EXPECT_LT(f_at(score(sketch, folder_->path()).fine, 0.005), 30);
   } catch (const TooLittleError&) {

@@ -223,7 +223,7 @@ TEST(RefinePoses, RenderedPosesInTheWrongOrderAreRefusedInOneLine) {
   for (size_t k = 0; k < truth.size(); ++k)
     scene.views[k].cam_from_world = truth[(7 * k + 3) % truth.size()].cam_from_world;
   try {
-    reconstruct(scene, {}, nullptr);
+    reconstruct_as_ever(scene);
     ADD_FAILURE() << "curves of poses that belong to other images";
   } catch (const TooLittleError& e) {
     EXPECT_THAT(e.what(), testing::EndsWith("poses and images contradict each other"));
@@ -242,7 +242,7 @@ TEST(RefinePoses, ARenderedPartWithPoseNoiseLosesLittle) {
   ReconstructOptions off;
   off.refine_poses = "off";
   const Scene scene = open_scene(folder.path());
-  const Reconstruction refined = reconstruct(scene, {}, nullptr);
+  const Reconstruction refined = reconstruct_as_ever(scene);
   ASSERT_EQ(refined.refined.size(), 24u);
   const double better = f_at(score(refined.sketch, folder.path()).fine, 0.005);
   EXPECT_GT(better,

@@ -28,6 +28,12 @@ inline void write_part(const std::string& part, int views, int resolution, doubl
   write_scene(synthesize(options), folder);
 }
 
+/// As without any option.
+inline Reconstruction reconstruct_as_ever(const Scene& scene) {
+  const ReconstructOptions options;
+  return reconstruct(scene, options, nullptr);
+}
+
 /// What users find in the folder of a result.
 inline std::string json_of(const Sketch& sketch) {
   std::ostringstream out;
