@@ -15,6 +15,7 @@ class ImageDetector : public Detector {
     return undistort_edgels(detect_edges(read_picture(view), options_), view, options_.min_chain,
                             options_.reach_px);
   }
+  bool takes_smaller_pictures() const override { return true; }
 
  private:
   DetectOptions options_;

@@ -40,6 +40,8 @@ class Detector {
   /// Edgels of one view, in its ideal pixels. From many threads. Throws InputError, also if an
   /// image or map has another size than the view.
   virtual EdgelMap detect(const Scene& scene, const View& view) const = 0;
+  /// Does it look at the pictures one by one, and at nothing else? Then smaller ones will do.
+  virtual bool takes_smaller_pictures() const { return false; }
   /// Does it make the geometry itself, rather than read it?
   virtual bool learns() const { return false; }
   /// The geometry in which the edges of a view were found; false if there is none. Throws

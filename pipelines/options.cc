@@ -248,6 +248,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
             "Sets several options at once; others override it")
       .applied = [o] { apply_preset(o->preset, o); };
   list_fields(static_cast<DetectionOptions*>(o), f);
+  f->add("picture-side", &o->least_side, "px", 0, 100000,
+         "Pictures at least twice as large are made smaller, to no less than this; 0: never");
   f->choose("refine-poses", &o->refine_poses, {"auto", "off", "on"},
             "Move cameras with the strokes: if they seem to err, never, always");
   Field& like = f->add("like", &o->like, "SKETCH",

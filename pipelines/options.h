@@ -42,6 +42,9 @@ struct CommonOptions {
 struct ReconstructOptions : DetectionOptions {
   std::string preset = "balanced";
   int seed = 0;  ///< copied from CommonOptions
+  /// Pictures at least twice as large are made smaller, to no less than this [px], see
+  /// smaller_pictures.h; 0: never.
+  int least_side = 1200;
   std::string refine_poses = "auto";  ///< see refine_poses.h
   LiftOptions lift;
   LinkOptions link;

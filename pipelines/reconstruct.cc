@@ -3,8 +3,10 @@
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "datasets/errors.h"
+#include "datasets/smaller_pictures.h"
 #include "pipelines/detectors.h"
 #include "pipelines/family_start.h"
 #include "pipelines/refine_poses.h"
@@ -46,13 +48,14 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
 
   std::vector<TagSquare> tags;
   if (options.tags) tags = measure_tags(scene, &report, progress);
-  const EdgeWorld all = detect_scene(scene, detector, tags, options, &report, progress);
-  const EdgeWorld near = focus_on_object(all, options, &report, progress);
+  EdgeWorld all = detect_scene(scene, detector, tags, options, &report, progress);
+  EdgeWorld near = focus_on_object(std::move(all), options, &report, progress);
   const FamilyStart family = start_from_siblings(near, options, &report, progress);
   const ReconstructOptions last = options_after(family, options);
   const bool cold = family.sketch.size() == 0;
-  const PosedStrokes posed = cold ? pose_and_fit(near, options, &report, progress)
-                                  : PosedStrokes{near, family.sketch};
+  const PosedStrokes posed = cold
+                                 ? pose_and_fit(std::move(near), options, &report, progress)
+                                 : PosedStrokes{std::move(near), family.sketch};
   const EdgeWorld& world = posed.world;
   Sketch sketch = posed.sketch;
   const std::vector<EdgeTarget> targets =
@@ -69,7 +72,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   tell_stop(options, &report, progress);
   const Sketch proposed = propose_hidden(sketch, world, &report);
   return {sketch, report, proposed, view_names(world),
-          posed.refined ? world.views : std::vector<View>(), tags};
+          posed.refined ? at_full_size(world.views, scene) : std::vector<View>(), tags};
 }
 
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,

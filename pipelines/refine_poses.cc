@@ -30,6 +30,7 @@ constexpr double kNoWorse = 0.9;     // times the edgels that are explained, for
                                      // none fewer among things, whose few strokes fit any cameras
 constexpr double kMovedPx = 0.3;     // strokes are lifted again
 constexpr int kFewestViews = 3, kMostLifts = 5;
+constexpr int kEnoughViews = 8;      // where most edges are seen by as many as a point takes
 constexpr double kAwry = 0.05;       // of the width of a picture: nothing but accidents fits
 
 struct Posed {
@@ -113,14 +114,13 @@ CameraPrior prior_of(const Misfit& misfit) {
 
 // Match, move cameras and strokes, and match again with a reach that shrinks.
 double refine(const std::vector<View>& stated, const CameraPrior& prior, Posed* posed) {
-  const EdgeWorld first = posed->world;
   double offset = 0;
   for (const double reach : {kReachPx, kReachPx, 1.5, 1.0}) {
     if (posed->sketch.size() == 0) break;
     const Observation o = look(*posed, reach);
     if (o.matches.matches.empty()) break;
     CameraFit fit = fit_cameras(posed->sketch, o, posed->world, stated, prior, 3);
-    posed->world = recast(first, std::move(fit.views));
+    posed->world = recast(std::move(posed->world), std::move(fit.views));
     posed->sketch = std::move(fit.sketch);
     offset = fit.after_px;
   }
@@ -220,8 +220,10 @@ void check_agreement(const Posed& posed, double share, bool moved, double as_sta
                   "%.1f %% of the edges of the images, as many as by accident (%.1f %%)",
                   100 * share, 100 * chance);
   }
+  const bool few = int(posed.world.views.size()) < kEnoughViews;
   throw TooLittleError("expected poses and images that agree, found curves for " +
-                       std::string(found) + ": poses and images contradict each other");
+                       std::string(found) + ": " + (few ? "there are too few views, or " : "") +
+                       "poses and images contradict each other");
 }
 
 // Names the views that do not fit; false if there are none.
@@ -270,11 +272,10 @@ double refine_from(const std::vector<View>& stated, CameraPrior prior,
   return settle(stated, prior, options, progress, posed);
 }
 
-// From the strokes that there are; where these explain little, from those of small pictures, too.
-// The offsets that are left.
-double refine_all(const Misfit& off, const ReconstructOptions& options, Progress* progress,
-                  Posed* posed) {
-  const Posed first = *posed;
+// From the first strokes; where these explain little, from those of small pictures, too. The
+// offsets that are left.
+double refine_all(const Posed& first, const Misfit& off, const ReconstructOptions& options,
+                  Progress* progress, Posed* posed) {
   const std::vector<View>& stated = first.world.views;
   CameraPrior prior = prior_of(off);
   const double after = refine_from(stated, prior, options, progress, posed);
@@ -295,7 +296,7 @@ bool move_cameras(const Misfit& off, double share, const ReconstructOptions& opt
                   RunReport* report, Progress* progress, Posed* posed) {
   const Posed stated = *posed;
   Stage stage("poses", 0, report, progress);
-  const double after = refine_all(off, options, progress, posed);
+  const double after = refine_all(stated, off, options, progress, posed);
   const double least = (stands_among_things(posed->world) ? 1 : kNoWorse) * share;
   const bool moved =
       options.refine_poses == "on" || explained(posed->sketch, posed->world).share > least;

@@ -22,7 +22,7 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector
 /// Without masks: finds the object among other things (find_object.h) by the most meaningful edges,
 /// and leaves out edgels that cannot be of it. With masks nothing changes. If the user gave a box,
 /// the object is what lies in it, with masks or without.
-EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
+EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
                           RunReport* report, Progress* progress);
 
 /// The space sweep over all edgels. Throws TooLittleError if no point is found.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "datasets/errors.h"
+#include "datasets/smaller_pictures.h"
 #include "edges/find_object.h"
 #include "edges/focus.h"
 #include "pipelines/detectors.h"
@@ -26,8 +27,10 @@ double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
 
 }  // namespace
 
-EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
+EdgeWorld detect_scene(const Scene& given, Detector* detector, const std::vector<TagSquare>& tags,
                        const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  const Scene scene =
+      detector->takes_smaller_pictures() ? with_smaller_pictures(given, options.least_side) : given;
   std::vector<Detection> found = detect_all(scene, detector, report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
@@ -51,12 +54,12 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector
   return make_edge_world(std::move(views), std::move(maps));
 }
 
-EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& options,
+EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
                           RunReport* report, Progress* progress) {
   if (!options.box.isEmpty()) {
     ObjectRegion region;
     region.box = options.box;
-    return focused(world, region, options.detect.meaning.most_sides);
+    return focused(std::move(world), region, options.detect.meaning.most_sides);
   }
   const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
                                   [](const EdgelMap& m) { return !m.mask.empty(); });
@@ -75,7 +78,7 @@ EdgeWorld focus_on_object(const EdgeWorld& world, const ReconstructOptions& opti
       find_object(points, cameras, meeting_point(world.views),
                   0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, look);
   stage.result(object.table ? "on a table" : "no table");
-  return focused(world, object, options.detect.meaning.most_sides);
+  return focused(std::move(world), object, options.detect.meaning.most_sides);
 }
 
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "datasets/scene.h"
+
+namespace sketchsplat {
+
+/// The scene with pictures whose longer side is at least twice `least_side` made smaller by the
+/// largest whole factor that leaves so many pixels: blocks of pixels become one where a picture is
+/// read, masks with it, and cameras are those of the smaller pictures. 0 leaves all as they are.
+Scene with_smaller_pictures(const Scene& scene, int least_side);
+
+/// Cameras of smaller pictures, for the pictures of the scene that they were made of; which view
+/// is whose is told by the path of the image.
+std::vector<View> at_full_size(const std::vector<View>& smaller, const Scene& scene);
+
+}  // namespace sketchsplat
