@@ -91,6 +91,13 @@ bool read_jpeg(const std::string& path, FILE* file, size_t size, int denominator
   return false;
 }
 
+// What of a denominator libjpeg does by itself.
+int jpeg_part(int denominator) {
+  for (const int part : {8, 4, 2})
+    if (denominator % part == 0) return part;
+  return 1;
+}
+
 Planes read_planes(const std::string& path, int denominator) {
   size_t size = 0;
   const File file = open_image(path, &size);
@@ -99,8 +106,9 @@ Planes read_planes(const std::string& path, int denominator) {
     std::string found;
     if (!decode_png(file.get(), size, &planes, &found))
       throw InputError(path, "a whole PNG image", "a broken one (" + found + ")");
-  } else if (read_jpeg(path, file.get(), size, denominator, &planes)) {
-    return planes;
+  } else if (const int part = jpeg_part(denominator);
+             read_jpeg(path, file.get(), size, part, &planes)) {
+    denominator /= part;
   } else {
     planes = read_by_plugin(path, false);
   }

@@ -12,9 +12,10 @@ namespace sketchsplat {
 /// Reads an image file: 8 or 16 bit grey, grey + alpha, RGB, RGBA -> [0, 1], alpha not
 /// premultiplied, samples as stored (no gamma, no rotation by EXIF: models are calibrated on the
 /// rows as they lie in the file). PNG is decoded by libpng, JPEG by libjpeg; for anything else
-/// OpenImageIO is loaded on the first call. A `denominator` of 2, 4 or 8 gives a picture so much
-/// smaller, rounded up (see Camera::shrunk), for a fraction of the time if the file is JPEG; blocks
-/// are averaged otherwise. Throws InputError if the file is missing, truncated or no image.
+/// OpenImageIO is loaded on the first call. A `denominator` above 1 gives a picture so much
+/// smaller, rounded up (see Camera::shrunk), for a fraction of the time if it is even and the file
+/// is JPEG; blocks are averaged otherwise. Throws InputError if the file is missing, truncated or
+/// no image.
 Picture read_picture(const std::string& path, int denominator = 1);
 
 /// Reads one grey channel in [0, 1] (mean of the colours, alpha not looked at). Throws InputError.
