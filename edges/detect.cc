@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "datasets/median.h"
 #include "edges/chain.h"
 #include "edges/gradient.h"
 #include "edges/meaningful.h"
@@ -74,8 +75,7 @@ float measure_noise(const Composite& c) {
                            2 * d[0] + d[1]));
     }
   if (r.size() < 16) return 0;
-  std::nth_element(r.begin(), r.begin() + r.size() / 2, r.end());
-  return r[r.size() / 2] / (0.6745f * 6.f);
+  return median(std::move(r)) / (0.6745f * 6.f);
 }
 
 struct Gradient {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/median.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -50,8 +52,7 @@ void drop_accidents(const CurvePoints& samples, const MatchOptions& options,
     if (options.max_bias > 0) {
       std::vector<float> d;
       for (size_t k = begin; k < m; ++k) d.push_back((*matches)[k].distance_px);
-      std::nth_element(d.begin(), d.begin() + d.size() / 2, d.end());
-      if (std::abs(d[d.size() / 2]) > options.max_bias) continue;
+      if (std::abs(median(std::move(d))) > options.max_bias) continue;
     }
     kept.insert(kept.end(), matches->begin() + begin, matches->begin() + m);
   }
@@ -90,9 +91,7 @@ void make_exclusive(const CurvePoints& samples, size_t num_edgels, bool between,
 double robust_sigma(const std::vector<SampleMatch>& matches) {
   std::vector<float> d;
   for (const SampleMatch& m : matches) d.push_back(std::abs(m.distance_px));
-  if (d.empty()) return 0;
-  std::nth_element(d.begin(), d.begin() + d.size() / 2, d.end());
-  return 1.4826 * d[d.size() / 2];
+  return 1.4826 * median(std::move(d));
 }
 
 }  // namespace

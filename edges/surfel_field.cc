@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "datasets/median.h"
 #include "edges/surfel_smooth.h"
 #include "edges/surfel_target.h"
 
@@ -47,8 +48,7 @@ double evenness(const SurfelCloud& cloud, const Eigen::VectorXd& grey, const Ill
   const Eigen::Matrix3Xd shades = shade(cloud, Eigen::Matrix3Xd::Ones(3, cloud.size()), light);
   std::vector<double> off(grey.size());
   for (int i = 0; i < grey.size(); ++i) off[i] = std::abs(grey[i] - shades(0, i));
-  std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
-  const double part = off[off.size() / 2] / std::max(1e-6, grey.mean());
+  const double part = median(std::move(off)) / std::max(1e-6, grey.mean());
   return 1 / (1 + std::pow(part / kPrint, 4));
 }
 

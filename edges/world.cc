@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/median.h"
+
 #include "edges/lift.h"
 
 namespace sketchsplat {
@@ -124,10 +126,7 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
     if (z > 0 && !world.bounds.isEmpty()) footprint.push_back(z / v.camera.fx);
     world.plane_normal.push_back(plane_normals(v, world.maps[i]));
   }
-  if (!footprint.empty()) {
-    std::nth_element(footprint.begin(), footprint.begin() + footprint.size() / 2, footprint.end());
-    world.footprint = footprint[footprint.size() / 2];
-  }
+  world.footprint = median(std::move(footprint));
   world.hull = VisualHull(world, kHullCells);
   return world;
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "datasets/median.h"
+
 namespace sketchsplat {
 
 MapErrors score_geometry(const GeometryMaps& maps, const GeometryMaps& truth,
@@ -29,8 +31,7 @@ MapErrors score_geometry(const GeometryMaps& maps, const GeometryMaps& truth,
   if (depths.empty()) return {};
   errors.normal_deg /= double(depths.size());
   errors.covered = double(depths.size()) / double(object);
-  std::nth_element(depths.begin(), depths.begin() + depths.size() / 2, depths.end());
-  errors.depth_px = depths[depths.size() / 2];
+  errors.depth_px = median(std::move(depths));
   return errors;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "datasets/errors.h"
+#include "datasets/median.h"
 #include "eval/inspect/pose_candidates.h"
 #include "eval/inspect/pose_fit.h"
 #include "sketches/covariance.h"
@@ -39,25 +40,6 @@ struct Pose {
   Similarity pose;
   double cost = 0;
 };
-
-// The move that closes the gaps, along columns of `basis` that the system determines.
-Vector7 solve(const PoseSystem& system, const MatrixXd& basis, double least, MatrixXd* left) {
-  const MatrixXd information = basis.transpose() * system.information * basis;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(information);
-  const Eigen::VectorXd slope = basis.transpose() * system.slope;
-  Eigen::VectorXd move = Eigen::VectorXd::Zero(basis.cols());
-  int open = 0;  // eigenvalues ascend
-  for (int k = 0; k < basis.cols(); ++k) {
-    const auto v = es.eigenvectors().col(k);
-    if (es.eigenvalues()[k] > least * system.weight)
-      move -= v * v.dot(slope) / es.eigenvalues()[k];
-    else
-      open = k + 1;
-  }
-  const Vector7 out = basis * move;
-  if (left) *left = (basis * es.eigenvectors().leftCols(open)).eval();  // may be the basis
-  return out;
-}
 
 class Aligner {
  public:
@@ -164,8 +146,7 @@ class Aligner {
   double typical_sigma() const {
     std::vector<double> sigmas;
     for (const Evidence& e : measured_.evidence) sigmas.push_back(e.sigma);
-    std::nth_element(sigmas.begin(), sigmas.begin() + long(sigmas.size() / 2), sigmas.end());
-    return sigmas[sigmas.size() / 2];
+    return median(std::move(sigmas));
   }
 
   // Mean of squared gaps over `scale`, at most 1 each, measured to nominal and back.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/pose_fit.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -106,6 +107,25 @@ void weigh_down(double scale, std::vector<PosePlace>* places) {
     const double u2 = most > 0 ? p.gap.squaredNorm() / (most * most) : 0;
     p.weight *= u2 < 1 ? (1 - u2) * (1 - u2) : 0;
   }
+}
+
+Eigen::Matrix<double, 7, 1> solve(const PoseSystem& system, const Eigen::MatrixXd& basis,
+                                  double least, Eigen::MatrixXd* left) {
+  const Eigen::MatrixXd information = basis.transpose() * system.information * basis;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> es(information);
+  const Eigen::VectorXd slope = basis.transpose() * system.slope;
+  Eigen::VectorXd move = Eigen::VectorXd::Zero(basis.cols());
+  int open = 0;  // eigenvalues ascend
+  for (int k = 0; k < basis.cols(); ++k) {
+    const auto v = es.eigenvectors().col(k);
+    if (es.eigenvalues()[k] > least * system.weight)
+      move -= v * v.dot(slope) / es.eigenvalues()[k];
+    else
+      open = k + 1;
+  }
+  const Eigen::Matrix<double, 7, 1> out = basis * move;
+  if (left) *left = (basis * es.eigenvectors().leftCols(open)).eval();  // may be the basis
+  return out;
 }
 
 }  // namespace sketchsplat

@@ -26,6 +26,12 @@ struct PoseSystem {
   double weight = 0;
 };
 
+/// The move that closes the gaps, along those combinations of the columns of `basis` (7 x B,
+/// orthonormal) of which the system holds more than the share `least` of its weight; `left`, which
+/// may be the basis: the columns that are not held, 7 x what is left. May be null.
+Eigen::Matrix<double, 7, 1> solve(const PoseSystem& system, const Eigen::MatrixXd& basis,
+                                  double least, Eigen::MatrixXd* left);
+
 /// Small moves of the measured sketch about a centre: turn, shift and growth, all as the lengths by
 /// which they move what lies `lever` away.
 class PoseFit {

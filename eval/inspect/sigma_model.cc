@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/median.h"
 #include "sketches/covariance.h"
 #include "sketches/curve.h"
 #include "sketches/curve_jacobian.h"
@@ -85,9 +86,7 @@ double SigmaModel::place(const Stroke& stroke, const Evidence& e) const {
 double typical_bias_px(const Sketch& measured) {
   std::vector<double> bias;
   for (const Evidence& e : measured.evidence) bias.push_back(e.bias_px);
-  if (bias.empty()) return 0;
-  std::nth_element(bias.begin(), bias.begin() + long(bias.size() / 2), bias.end());
-  return bias[bias.size() / 2];
+  return median(std::move(bias));
 }
 
 MatrixXd calibrated_covariance(const Sketch& measured, int stroke, const SigmaModel& sigma) {
