@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "datasets/errors.h"
+#include "datasets/published_samples.h"
 #include "eval/nearest.h"
 #include "eval/parameters.h"
 

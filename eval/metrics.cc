@@ -9,6 +9,7 @@
 #include <map>
 
 #include "datasets/ground_truth.h"
+#include "datasets/published_samples.h"
 #include "eval/nearest.h"
 
 namespace sketchsplat {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "datasets/errors.h"
+#include "datasets/published_samples.h"
 #include "sketches/io.h"
 #include "temp_folder.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "datasets/ground_truth.h"
+#include "datasets/published_samples.h"
 #include "eval/nearest.h"
 
 namespace sketchsplat {
