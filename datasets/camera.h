@@ -47,6 +47,12 @@ struct Camera {
             (cy + 0.5) / d - 0.5};
   }
 
+  /// The other way round: of the picture of this size that was made `factor` times smaller.
+  Camera enlarged(int factor, int full_width, int full_height) const {
+    const double d = factor;
+    return {full_width, full_height, d * fx, d * fy, d * (cx + 0.5) - 0.5, d * (cy + 0.5) - 0.5};
+  }
+
   bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= width - 1 && pixel.y() <= height - 1;
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace sketchsplat {
 
@@ -21,17 +20,17 @@ Scene with_smaller_pictures(const Scene& scene, int least_side) {
   return out;
 }
 
-std::vector<View> at_full_size(const std::vector<View>& smaller, const Scene& scene) {
-  std::map<std::string, const View*> of_path;
-  for (const View& view : scene.views) of_path[view.image_path] = &view;
+std::vector<View> at_full_size(const std::vector<View>& views, const Scene& smaller,
+                               const Scene& scene) {
   std::vector<View> out;
-  for (const View& from : smaller) {
-    View view = *of_path.at(from.image_path);
-    // Blocks at the border may be cut off, those in the middle are whole.
-    const double factor = std::round(double(view.camera.width) / from.camera.width);
-    view.camera.fx = factor * from.camera.fx, view.camera.fy = factor * from.camera.fy;
-    view.camera.cx = factor * (from.camera.cx + 0.5) - 0.5;
-    view.camera.cy = factor * (from.camera.cy + 0.5) - 0.5;
+  size_t i = 0;
+  for (const View& from : views) {
+    while (i < smaller.views.size() && (smaller.views[i].name != from.name ||
+                                        smaller.views[i].image_path != from.image_path))
+      ++i;
+    View view = scene.views.at(i);
+    const int factor = int(std::lround(view.camera.fx / smaller.views[i++].camera.fx));
+    view.camera = from.camera.enlarged(factor, view.camera.width, view.camera.height);
     view.cam_from_world = from.cam_from_world;
     view.lens = from.lens;
     out.push_back(std::move(view));

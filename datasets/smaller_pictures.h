@@ -12,8 +12,9 @@ namespace sketchsplat {
 /// read, masks with it, and cameras are those of the smaller pictures. 0 leaves all as they are.
 Scene with_smaller_pictures(const Scene& scene, int least_side);
 
-/// Cameras of smaller pictures, for the pictures of the scene that they were made of; which view
-/// is whose is told by the path of the image.
-std::vector<View> at_full_size(const std::vector<View>& smaller, const Scene& scene);
+/// Views of `smaller`, some or all in its order, with cameras that may have moved since: the same
+/// for the pictures of the scene that it was made of.
+std::vector<View> at_full_size(const std::vector<View>& views, const Scene& smaller,
+                               const Scene& scene);
 
 }  // namespace sketchsplat

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/estimate.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace sketchsplat {
 namespace {
 
@@ -20,7 +23,11 @@ Rate rate_of(const std::string& preset) {
 Load expected_load(int views, double pixels, const ReconstructOptions& options, int threads) {
   if (views == 0) return {0.1, 25};  // it cannot be opened: soon said
   const Rate rate = rate_of(options.preset);
-  const double mpx = pixels / 1e6;
+  // Of the pictures as edges are looked for in them, if they are 4 : 3 (smaller_pictures.h).
+  const double side = std::sqrt(pixels / views * 4 / 3);
+  const bool smaller = options.detector == "image" && options.least_side > 0;
+  const double factor = smaller ? std::max(1.0, std::floor(side / options.least_side)) : 1;
+  const double mpx = pixels / (factor * factor) / 1e6;
   Load load = {rate.seconds + rate.seconds_per_mpx * mpx, rate.mb + rate.mb_per_mpx * mpx};
   if (options.detector == "2dgs-sn") {
     // A rendering goes over a given number of pixels at the most, whatever the pictures have.

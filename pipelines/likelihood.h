@@ -8,8 +8,7 @@
 
 namespace sketchsplat {
 
-/// How views show edges. Fitted by hand to candidate strokes of synthetic parts, so that a logistic
-/// regression of right and wrong on the likelihood has a slope near 1.
+/// How views show edges. Set by hand on candidate strokes of synthetic parts.
 struct EvidenceModel {
   double sure_rate = 0.88;     ///< views that show an edge that nothing hides, by the hull
   double unsure_rate = 0.3;    ///< the same where something may hide it

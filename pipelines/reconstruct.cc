@@ -35,11 +35,11 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 
 }  // namespace
 
-// The method. Images become edgels, edgels points in space, points strokes, and these tell whether
-// the cameras err; then rounds of drawing the strokes into the views, moving them and simplifying
-// the graph, until nothing changes; and the same once more with what is found in the edgels that
-// are left. With siblings of the part, their family's strokes, moved onto the edgels, come first,
-// and the rest is for edgels that are left.
+// The method. Images, no larger than it takes, become edgels, edgels points in space, points
+// strokes, and these tell whether the cameras err; then rounds of drawing the strokes into the
+// views, moving them and simplifying the graph, until nothing changes; and the same once more with
+// what is found in the edgels that are left. With siblings of the part, their family's strokes,
+// moved onto the edgels, come first, and the rest is for edgels that are left.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
@@ -48,7 +48,10 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
 
   std::vector<TagSquare> tags;
   if (options.tags) tags = measure_tags(scene, &report, progress);
-  EdgeWorld all = detect_scene(scene, detector, tags, options, &report, progress);
+  const Scene small = detector->takes_smaller_pictures()
+                          ? with_smaller_pictures(scene, options.least_side)
+                          : scene;
+  EdgeWorld all = detect_scene(small, detector, tags, options, &report, progress);
   EdgeWorld near = focus_on_object(std::move(all), options, &report, progress);
   const FamilyStart family = start_from_siblings(near, options, &report, progress);
   const ReconstructOptions last = options_after(family, options);
@@ -72,7 +75,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   tell_stop(options, &report, progress);
   const Sketch proposed = propose_hidden(sketch, world, &report);
   return {sketch, report, proposed, view_names(world),
-          posed.refined ? at_full_size(world.views, scene) : std::vector<View>(), tags};
+          posed.refined ? at_full_size(world.views, small, scene) : std::vector<View>(), tags};
 }
 
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,

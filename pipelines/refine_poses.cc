@@ -19,7 +19,7 @@ namespace {
 constexpr double kReachPx = 2, kSpacingPx = 6;
 constexpr double kOffPx = 0.15;      // strokes of exact cameras have offsets of 0.03 to 0.09 px
 constexpr double kOfScatter = 0.75;  // where edgels are vague, offsets are larger
-constexpr double kSure = 4;          // standard deviations of a focal length or lens that is wrong
+constexpr double kSure = 4;          // standard deviations of chi squared beyond its mean
 constexpr double kExactPx = 0.02;    // poses err at least by this
 constexpr double kLoose = 3;         // times the offsets, which do not reach beyond the matches
 constexpr double kLowShare = 0.4;    // of the edgels: strokes that explain less may be accidents
@@ -146,10 +146,8 @@ double moved_px(const Sketch& sketch, const std::vector<View>& a, const std::vec
 // Cameras that pictures of 1 / factor the size make, for those of full size.
 std::vector<View> enlarged(const std::vector<View>& coarse, std::vector<View> fine, int factor) {
   for (size_t v = 0; v < fine.size(); ++v) {
-    const Camera& from = coarse[v].camera;
-    Camera& to = fine[v].camera;
-    to.fx = factor * from.fx, to.fy = factor * from.fy;
-    to.cx = factor * (from.cx + 0.5) - 0.5, to.cy = factor * (from.cy + 0.5) - 0.5;
+    fine[v].camera =
+        coarse[v].camera.enlarged(factor, fine[v].camera.width, fine[v].camera.height);
     fine[v].cam_from_world = coarse[v].cam_from_world;
     fine[v].lens = coarse[v].lens;
   }

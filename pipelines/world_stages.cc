@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "datasets/errors.h"
-#include "datasets/smaller_pictures.h"
 #include "edges/find_object.h"
 #include "edges/focus.h"
 #include "pipelines/detectors.h"
@@ -27,10 +26,8 @@ double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
 
 }  // namespace
 
-EdgeWorld detect_scene(const Scene& given, Detector* detector, const std::vector<TagSquare>& tags,
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
                        const ReconstructOptions& options, RunReport* report, Progress* progress) {
-  const Scene scene =
-      detector->takes_smaller_pictures() ? with_smaller_pictures(given, options.least_side) : given;
   std::vector<Detection> found = detect_all(scene, detector, report, progress);
   std::vector<View> views;
   std::vector<EdgelMap> maps;

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "datasets/image_io.h"
-#include "datasets/jpeg_codec.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {
@@ -58,29 +56,11 @@ TEST_F(Smaller, PicturesThatAreNotTwiceAsLargeStay) {
   EXPECT_EQ(with_smaller_pictures(scene, 12).views[0].camera.width, 12);
 }
 
-TEST_F(Smaller, JpegFilesShrinkByAnyFactorAsOthersDo) {
-  constexpr int kWidth = 31, kHeight = 20;
-  std::vector<unsigned char> rows;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
-      for (int c = 0; c < 3; ++c) rows.push_back(static_cast<unsigned char>(5 * x + 3 * y));
-  std::string bytes, found;
-  encode_jpeg(rows.data(), kWidth, kHeight, 95, &bytes, &found);
-  ASSERT_EQ(found, "");
-  folder.write("grey.jpg", bytes);
-  for (const int d : {1, 2, 3, 4, 5, 6, 8, 12, 16}) {
-    const Picture p = read_picture(folder.file("grey.jpg"), d);
-    ASSERT_EQ(p.width(), (kWidth + d - 1) / d) << d;
-    ASSERT_EQ(p.height(), (kHeight + d - 1) / d) << d;
-    EXPECT_NEAR(p.red.at(0, 0), (5 + 3) * 0.5 * (d - 1) / 255, 0.02) << d;
-  }
-}
-
 TEST_F(Smaller, CamerasGoBackToFullSize) {
   Scene small = with_smaller_pictures(scene, 6);
   small.views[0].cam_from_world.translation.x() = 0.25;
   small.views[0].camera.fx *= 1.01;
-  const std::vector<View> back = at_full_size(small.views, scene);
+  const std::vector<View> back = at_full_size(small.views, small, scene);
   const Camera &full = scene.views[0].camera, &now = back[0].camera;
   EXPECT_EQ(now.width, 24);
   EXPECT_EQ(now.height, 16);
@@ -90,6 +70,20 @@ TEST_F(Smaller, CamerasGoBackToFullSize) {
   EXPECT_NEAR(now.cy, full.cy, 1e-12);
   EXPECT_EQ(back[0].cam_from_world.translation.x(), 0.25);
   EXPECT_EQ(read_picture(back[0]).width(), 24);
+}
+
+TEST_F(Smaller, ViewsThatWereLeftOutAndImagesThatComeTwiceAreNoMatter) {
+  scene.views.resize(3, scene.views[0]);
+  for (int v = 0; v < 3; ++v) {
+    scene.views[v].name = std::to_string(v);
+    scene.views[v].camera.fx += v;
+  }
+  const Scene small = with_smaller_pictures(scene, 6);
+  const std::vector<View> back = at_full_size({small.views[0], small.views[2]}, small, scene);
+  ASSERT_EQ(back.size(), 2u);
+  EXPECT_EQ(back[0].name, "0");
+  EXPECT_EQ(back[1].name, "2");
+  EXPECT_NEAR(back[1].camera.fx, scene.views[2].camera.fx, 1e-12);
 }
 
 }  // namespace

@@ -137,6 +137,23 @@ TEST_F(BoxHole, EdgeMapsOfOtherDetectorsDo) {
   EXPECT_THROW(reconstruct(scene, options, nullptr), InputError);
 }
 
+TEST_F(BoxHole, LargePicturesAreMadeSmallerAndTheirCamerasComeBackAtFullSize) {
+  ReconstructOptions options;
+  options.least_side = 200;  // half of what they have
+  options.refine_poses = "on";
+  const Reconstruction r = reconstruct(*scene_, options, nullptr);
+  EXPECT_GE(f_at(score(r.sketch, folder_->path()).fine, 0.005), 93);
+  ASSERT_EQ(r.refined.size(), scene_->views.size());
+  for (size_t v = 0; v < r.refined.size(); ++v) {
+    const View &now = r.refined[v], &stated = scene_->views[v];
+    EXPECT_EQ(now.image_path, stated.image_path);
+    EXPECT_EQ(now.camera.width, 400);
+    EXPECT_NEAR(now.camera.fx, stated.camera.fx, 0.01 * stated.camera.fx);
+    EXPECT_NEAR(now.camera.cx, stated.camera.cx, 2);
+  }
+  EXPECT_EQ(read_picture(r.refined[0]).width(), 400);
+}
+
 TEST_F(BoxHole, GoesOnWithoutAFrameThatIsTruncatedAndOneThatIsMissing) {
   const TempFolder folder;
   std::filesystem::copy(folder_->path(), folder.path(), std::filesystem::copy_options::recursive);
