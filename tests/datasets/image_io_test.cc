@@ -3,9 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <png.h>
-#include <cstdio>
-#include <jpeglib.h>  // needs <cstdio>
 
 #include <cmath>
 #include <cstdint>
@@ -14,55 +11,16 @@
 
 #include "datasets/camera.h"
 #include "datasets/errors.h"
+#include "tests/datasets/image_files.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {
 namespace {
 
+using namespace test;  // NOLINT
 using ::testing::ElementsAre;
 using ::testing::FloatEq;
 using ::testing::HasSubstr;
-
-/// Writes samples (8 or 16 bit, interleaved) by libpng, so that reading is not tested against our
-/// own writer alone.
-void write_by_libpng(const std::string& path, int width, int height, int depth, int color_type,
-                     const std::vector<uint16_t>& samples, int interlace = PNG_INTERLACE_NONE) {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png_create_info_struct(png);
-  FILE* file = std::fopen(path.c_str(), "wb");
-  ASSERT_TRUE(file);
-  png_init_io(png, file);
-  png_set_IHDR(png, info, width, height, depth, color_type, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
-  if (color_type == PNG_COLOR_TYPE_PALETTE) {
-    const png_color palette[2] = {{255, 0, 51}, {0, 102, 204}};
-    const png_byte transparency[1] = {51};
-    png_set_PLTE(png, info, palette, 2);
-    png_set_tRNS(png, info, transparency, 1, nullptr);
-  }
-  png_set_gAMA(png, info, 1.0);  // must not change what is read
-  png_write_info(png, info);
-  std::vector<png_byte> bytes;
-  for (const uint16_t sample : samples) {
-    if (depth == 16) bytes.push_back(sample >> 8);
-    bytes.push_back(sample & 255);
-  }
-  std::vector<png_bytep> rows;
-  for (int y = 0; y < height; ++y) rows.push_back(bytes.data() + y * bytes.size() / height);
-  png_write_image(png, rows.data());
-  png_write_end(png, info);
-  png_destroy_write_struct(&png, &info);
-  std::fclose(file);
-}
-
-std::string what_is_found(const std::string& path) {
-  try {
-    read_picture(path);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "an image";
-}
 
 Image<float> noise(int width, int height) {
   Image<float> image(width, height);
@@ -241,118 +199,6 @@ TEST(ReadPicture, HeaderThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
   png_destroy_write_struct(&png, &info);
   std::fclose(file);
   EXPECT_THAT(what_is_found(path), HasSubstr("more pixels than the file can hold"));
-}
-
-TEST(ReadPicture, JpegWithoutItsEndIsRefused) {
-  const TempFolder folder;
-  const std::string path =
-      folder.write("cut.jpg", "\xff\xd8\xff\xe0 \xff\xd9 thumbnail \xff\xda 123");
-  EXPECT_THAT(what_is_found(path), HasSubstr("a broken one (no end)"));
-}
-
-// By libjpeg, at the best quality and without sparing colours.
-std::string jpeg_of(int width, int height, const std::vector<unsigned char>& rgb) {
-  jpeg_compress_struct jpeg;
-  jpeg_error_mgr errors;
-  jpeg.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&jpeg);
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&jpeg, &bytes, &size);
-  jpeg.image_width = width, jpeg.image_height = height;
-  jpeg.input_components = int(rgb.size()) / (width * height);
-  jpeg.in_color_space = jpeg.input_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-  jpeg_set_defaults(&jpeg);
-  jpeg_set_quality(&jpeg, 100, TRUE);
-  jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[0].v_samp_factor = 1;
-  jpeg_start_compress(&jpeg, TRUE);
-  for (int y = 0; y < height; ++y) {
-    JSAMPROW row = const_cast<JSAMPROW>(rgb.data()) + size_t(y) * width * jpeg.input_components;
-    jpeg_write_scanlines(&jpeg, &row, 1);
-  }
-  jpeg_finish_compress(&jpeg);
-  const std::string out(reinterpret_cast<char*>(bytes), size);
-  std::free(bytes);
-  jpeg_destroy_compress(&jpeg);
-  return out;
-}
-
-// A ramp to the right in red, downwards in green.
-std::vector<unsigned char> ramps(int width, int height) {
-  std::vector<unsigned char> rgb;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      for (const int v : {20 + 2 * x, 30 + 3 * y, 90}) rgb.push_back(static_cast<unsigned char>(v));
-  return rgb;
-}
-
-TEST(ReadPicture, JpegIsDecodedInColourAndInGrey) {
-  const TempFolder folder;
-  const std::string path = folder.write("a b.JPG", jpeg_of(61, 43, ramps(61, 43)));
-  const Picture p = read_picture(path);
-  ASSERT_EQ(p.width(), 61);
-  ASSERT_EQ(p.height(), 43);
-  EXPECT_TRUE(p.alpha.empty());
-  for (int y = 0; y < 43; ++y)
-    for (int x = 0; x < 61; ++x) {
-      ASSERT_NEAR(p.red.at(x, y), (20 + 2 * x) / 255.0, 3 / 255.0);
-      ASSERT_NEAR(p.green.at(x, y), (30 + 3 * y) / 255.0, 3 / 255.0);
-      ASSERT_NEAR(p.blue.at(x, y), 90 / 255.0, 4 / 255.0);
-    }
-  EXPECT_EQ(read_image_size(path).width, 61);
-  EXPECT_EQ(read_image_size(path).height, 43);
-  const std::string grey = folder.write("g.jpg", jpeg_of(8, 8, std::vector<unsigned char>(64, 51)));
-  EXPECT_NEAR(read_picture(grey).blue.at(5, 5), 0.2, 1e-6);
-}
-
-TEST(ReadPicture, AFractionOfTheSizeShowsTheMeanOfBlocksAtTheShrunkCamera) {
-  const TempFolder folder;
-  const std::vector<unsigned char> rgb = ramps(61, 43);
-  std::vector<uint16_t> samples(rgb.begin(), rgb.end());
-  const std::string jpeg = folder.write("a.jpg", jpeg_of(61, 43, rgb)), png = folder.file("a.png");
-  write_by_libpng(png, 61, 43, 8, PNG_COLOR_TYPE_RGB, samples);
-  for (const int d : {2, 4, 8})
-    for (const std::string& path : {jpeg, png}) {
-      const Picture p = read_picture(path, d);
-      const Camera camera = Camera{61, 43, 50, 50, 30, 21}.shrunk(d);
-      ASSERT_EQ(p.width(), camera.width) << path << " " << d;
-      ASSERT_EQ(p.height(), camera.height);
-      ASSERT_EQ(p.width(), (61 + d - 1) / d);
-      for (int y = 1; y < 43 / d - 1; ++y)
-        for (int x = 1; x < 61 / d - 1; ++x) {
-          // The full pixel whose ray goes through the middle of this one.
-          const double u = (x - camera.cx) / camera.fx * 50 + 30;
-          const double v = (y - camera.cy) / camera.fy * 50 + 21;
-          ASSERT_NEAR(p.red.at(x, y), (20 + 2 * u) / 255, 3 / 255.0) << path << " " << d;
-          ASSERT_NEAR(p.green.at(x, y), (30 + 3 * v) / 255, 3 / 255.0) << path << " " << d;
-        }
-    }
-  write_by_libpng(png, 2, 1, 8, PNG_COLOR_TYPE_RGBA, {255, 0, 0, 255, 0, 0, 0, 0});
-  const Picture p = read_picture(png, 2);
-  EXPECT_FLOAT_EQ(p.alpha.at(0, 0), 0.5f);
-  EXPECT_FLOAT_EQ(p.red.at(0, 0), 1) << "what is transparent has no colour";
-}
-
-TEST(ReadPicture, TruncatedJpegIsRefusedWhereverItIsCut) {
-  const TempFolder folder;
-  const std::string bytes = jpeg_of(61, 43, ramps(61, 43));
-  for (const size_t size : {size_t(3), size_t(20), size_t(200), bytes.size() / 2, bytes.size() - 2})
-    for (const std::string end : {"", "\xff\xd9"}) {
-      const std::string cut = folder.write("cut.jpg", bytes.substr(0, size) + end);
-      if (size == bytes.size() - 2 && !end.empty()) continue;  // that is the whole file
-      EXPECT_THAT(what_is_found(cut), HasSubstr("cut.jpg: expected a whole JPEG image, found"))
-          << size << " bytes";
-    }
-}
-
-TEST(ReadPicture, JpegHeaderThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
-  const TempFolder folder;
-  std::string bytes = jpeg_of(16, 16, ramps(16, 16));
-  const size_t frame = bytes.find("\xff\xc0");
-  ASSERT_NE(frame, std::string::npos);
-  bytes.replace(frame + 5, 4, "\xfd\xe8\xfd\xe8");  // 65000 x 65000
-  EXPECT_THAT(what_is_found(folder.write("huge.jpg", bytes)),
-              HasSubstr("more pixels than the file can hold"));
 }
 
 TEST(ReadPicture, WhatIsNoImageIsNamed) {

@@ -56,59 +56,6 @@ class Habits : public Program {
 fs::path Habits::part_;
 Outcome Habits::made_, Habits::result_;
 
-// What a dry run with these arguments would save as options.
-class Config : public Habits {
- protected:
-  std::string saved(const std::string& arguments) const {
-    const std::string file = in_folder("saved.toml");
-    const Outcome o = run("reconstruct " + scene() + " --out " + in_folder("dry") +
-                          " --dry-run --save-config " + file + " " + arguments);
-    EXPECT_EQ(o.status, 0) << o.err;
-    return text_of_file(file);
-  }
-  std::string file_of(const std::string& text) const {
-    std::ofstream(in_folder("options.toml")) << text;
-    return in_folder("options.toml");
-  }
-  void expect_refused(const std::string& text, const std::string& why) const {
-    const Outcome o = run("reconstruct " + scene() + " --out " + in_folder("dry") +
-                          " --dry-run --config " + file_of(text));
-    EXPECT_EQ(o.status, kBadInput) << text;
-    EXPECT_THAT(o.err, AllOf(HasSubstr("options.toml: "), HasSubstr(why))) << text;
-    EXPECT_EQ(count_lines(o.err), 1) << o.err;
-  }
-};
-
-TEST_F(Config, WhatIsSavedIsReadAgain) {
-  EXPECT_EQ(saved(""), "[reconstruct]\n");
-  const std::string some = saved(
-      "--detector geometry --min-nats 2.5 --no-surfel-shading --like 'a b.json' --like c.json");
-  EXPECT_EQ(some,
-            "[reconstruct]\ndetector = \"geometry\"\nsurfel-shading = false\n"
-            "like = [\"a b.json\", \"c.json\"]\nmin-nats = 2.5\n");
-  EXPECT_EQ(saved("--config " + file_of(some)), some);
-}
-
-TEST_F(Config, TheCommandLineHasTheLastWordAndOtherVerbsTheirOwnSections) {
-  const std::string file =
-      file_of("min-nats = 3 # comment\n[reconstruct]\nmin-length = 7\n[batch]\njobs = 2\n");
-  EXPECT_EQ(saved("--min-nats 1 --config " + file),
-            "[reconstruct]\nmin-nats = 1\nmin-length = 7\n");
-}
-
-TEST_F(Config, WhatIsNoOptionIsRefusedInOneLine) {
-  expect_refused("min-natz = 3\n", "found 'min-natz', did you mean min-nats?");
-  expect_refused("min-nats = much\n", "min-nats");
-  expect_refused("min-nats = [1, 2]\n", "expected one value of min-nats, found 2");
-  expect_refused("out = \"elsewhere\"\n", "found 'out'");
-  expect_refused("config = \"options.toml\"\n", "found 'config'");
-  fs::remove(in_folder("options.toml"));
-  const Outcome none = run("reconstruct " + scene() + " --out " + in_folder("dry") +
-                           " --config " + in_folder("options.toml"));
-  EXPECT_EQ(none.status, kBadInput);
-  EXPECT_THAT(none.err, HasSubstr("expected a file of options, found none"));
-}
-
 TEST_F(Habits, EveryVerbWritesItsResultsAsJsonIfAsked) {
   EXPECT_EQ(json::parse(made_.out)["views"], 12) << made_.err;
   EXPECT_EQ(json::parse(made_.out)["true_edges"], 12);

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <cstdio>
+#include <jpeglib.h>  // needs <cstdio>
+
+#include <cstdint>
+#include <cstdlib>
+
+#include "datasets/camera.h"
+#include "datasets/image_io.h"
+#include "tests/datasets/image_files.h"
+#include "tests/datasets/temp_folder.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using ::testing::HasSubstr;
+
+TEST(Jpeg, JpegWithoutItsEndIsRefused) {
+  const TempFolder folder;
+  const std::string path =
+      folder.write("cut.jpg", "\xff\xd8\xff\xe0 \xff\xd9 thumbnail \xff\xda 123");
+  EXPECT_THAT(what_is_found(path), HasSubstr("a broken one (no end)"));
+}
+
+// By libjpeg, at the best quality and without sparing colours.
+std::string jpeg_of(int width, int height, const std::vector<unsigned char>& rgb) {
+  jpeg_compress_struct jpeg;
+  jpeg_error_mgr errors;
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&jpeg);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &bytes, &size);
+  jpeg.image_width = width, jpeg.image_height = height;
+  jpeg.input_components = int(rgb.size()) / (width * height);
+  jpeg.in_color_space = jpeg.input_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_quality(&jpeg, 100, TRUE);
+  jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[0].v_samp_factor = 1;
+  jpeg_start_compress(&jpeg, TRUE);
+  for (int y = 0; y < height; ++y) {
+    JSAMPROW row = const_cast<JSAMPROW>(rgb.data()) + size_t(y) * width * jpeg.input_components;
+    jpeg_write_scanlines(&jpeg, &row, 1);
+  }
+  jpeg_finish_compress(&jpeg);
+  const std::string out(reinterpret_cast<char*>(bytes), size);
+  std::free(bytes);
+  jpeg_destroy_compress(&jpeg);
+  return out;
+}
+
+// A ramp to the right in red, downwards in green.
+std::vector<unsigned char> ramps(int width, int height) {
+  std::vector<unsigned char> rgb;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (const int v : {20 + 2 * x, 30 + 3 * y, 90}) rgb.push_back(static_cast<unsigned char>(v));
+  return rgb;
+}
+
+TEST(Jpeg, JpegIsDecodedInColourAndInGrey) {
+  const TempFolder folder;
+  const std::string path = folder.write("a b.JPG", jpeg_of(61, 43, ramps(61, 43)));
+  const Picture p = read_picture(path);
+  ASSERT_EQ(p.width(), 61);
+  ASSERT_EQ(p.height(), 43);
+  EXPECT_TRUE(p.alpha.empty());
+  for (int y = 0; y < 43; ++y)
+    for (int x = 0; x < 61; ++x) {
+      ASSERT_NEAR(p.red.at(x, y), (20 + 2 * x) / 255.0, 3 / 255.0);
+      ASSERT_NEAR(p.green.at(x, y), (30 + 3 * y) / 255.0, 3 / 255.0);
+      ASSERT_NEAR(p.blue.at(x, y), 90 / 255.0, 4 / 255.0);
+    }
+  EXPECT_EQ(read_image_size(path).width, 61);
+  EXPECT_EQ(read_image_size(path).height, 43);
+  const std::string grey = folder.write("g.jpg", jpeg_of(8, 8, std::vector<unsigned char>(64, 51)));
+  EXPECT_NEAR(read_picture(grey).blue.at(5, 5), 0.2, 1e-6);
+}
+
+TEST(Jpeg, AFractionOfTheSizeShowsTheMeanOfBlocksAtTheShrunkCamera) {
+  const TempFolder folder;
+  const std::vector<unsigned char> rgb = ramps(61, 43);
+  std::vector<uint16_t> samples(rgb.begin(), rgb.end());
+  const std::string jpeg = folder.write("a.jpg", jpeg_of(61, 43, rgb)), png = folder.file("a.png");
+  write_by_libpng(png, 61, 43, 8, PNG_COLOR_TYPE_RGB, samples);
+  for (const int d : {2, 3, 4, 6, 8, 16})
+    for (const std::string& path : {jpeg, png}) {
+      const Picture p = read_picture(path, d);
+      const Camera camera = Camera{61, 43, 50, 50, 30, 21}.shrunk(d);
+      ASSERT_EQ(p.width(), camera.width) << path << " " << d;
+      ASSERT_EQ(p.height(), camera.height);
+      ASSERT_EQ(p.width(), (61 + d - 1) / d);
+      for (int y = 1; y < 43 / d - 1; ++y)
+        for (int x = 1; x < 61 / d - 1; ++x) {
+          // The full pixel whose ray goes through the middle of this one.
+          const double u = (x - camera.cx) / camera.fx * 50 + 30;
+          const double v = (y - camera.cy) / camera.fy * 50 + 21;
+          ASSERT_NEAR(p.red.at(x, y), (20 + 2 * u) / 255, 3 / 255.0) << path << " " << d;
+          ASSERT_NEAR(p.green.at(x, y), (30 + 3 * v) / 255, 3 / 255.0) << path << " " << d;
+        }
+    }
+  write_by_libpng(png, 2, 1, 8, PNG_COLOR_TYPE_RGBA, {255, 0, 0, 255, 0, 0, 0, 0});
+  const Picture p = read_picture(png, 2);
+  EXPECT_FLOAT_EQ(p.alpha.at(0, 0), 0.5f);
+  EXPECT_FLOAT_EQ(p.red.at(0, 0), 1) << "what is transparent has no colour";
+}
+
+TEST(Jpeg, TruncatedJpegIsRefusedWhereverItIsCut) {
+  const TempFolder folder;
+  const std::string bytes = jpeg_of(61, 43, ramps(61, 43));
+  for (const size_t size : {size_t(3), size_t(20), size_t(200), bytes.size() / 2, bytes.size() - 2})
+    for (const std::string end : {"", "\xff\xd9"}) {
+      const std::string cut = folder.write("cut.jpg", bytes.substr(0, size) + end);
+      if (size == bytes.size() - 2 && !end.empty()) continue;  // that is the whole file
+      EXPECT_THAT(what_is_found(cut), HasSubstr("cut.jpg: expected a whole JPEG image, found"))
+          << size << " bytes";
+    }
+}
+
+TEST(Jpeg, JpegHeaderThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
+  const TempFolder folder;
+  std::string bytes = jpeg_of(16, 16, ramps(16, 16));
+  const size_t frame = bytes.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  bytes.replace(frame + 5, 4, "\xfd\xe8\xfd\xe8");  // 65000 x 65000
+  EXPECT_THAT(what_is_found(folder.write("huge.jpg", bytes)),
+              HasSubstr("more pixels than the file can hold"));
+}
+
+}  // namespace
+}  // namespace sketchsplat

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The stages from images to points, in a world of perfect edgels; focus on an object among other
+// things is tested where it is found (object_region_test).
+#include <gtest/gtest.h>
+
+#include "datasets/errors.h"
+#include "pipelines/stages.h"
+#include "tests/support/strokes.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using Eigen::Vector3d;
+const Vector3d kMiddle(0.5, 0.5, 0.5);
+
+// Two cubes, one beside the other.
+EdgeWorld world_of(bool masks) {
+  std::vector<Polyline> curves = cube_edges({0.1, 0.35, 0.35}, 0.3);
+  for (const Polyline& p : cube_edges({0.6, 0.35, 0.35}, 0.3)) curves.push_back(p);
+  const std::vector<View> views = ring_of_views(12, kMiddle, 3);
+  std::vector<EdgelMap> maps;
+  for (const View& view : views) {
+    maps.push_back(ideal_edgels(view, curves));
+    if (masks) maps.back().mask = Image<uint8_t>(view.camera.width, view.camera.height, 1);
+  }
+  return make_edge_world(views, maps);
+}
+
+size_t edgels_of(const EdgeWorld& world) {
+  size_t sum = 0;
+  for (const EdgelMap& map : world.maps) sum += map.edgels.size();
+  return sum;
+}
+
+TEST(WorldStages, AWorldWithMasksIsLeftAsItIs) {
+  const EdgeWorld world = world_of(true);
+  RunReport report;
+  const EdgeWorld near = focus_on_object(world, {}, &report, nullptr);
+  EXPECT_EQ(edgels_of(near), edgels_of(world));
+  EXPECT_TRUE(near.bounds.isApprox(world.bounds));
+  EXPECT_TRUE(report.stages.empty()) << "nothing was looked for";
+}
+
+TEST(WorldStages, ABoxOfTheUserHoldsAllThatIsLifted) {
+  const EdgeWorld world = world_of(false);
+  ReconstructOptions options;
+  options.box = Eigen::AlignedBox3d(Vector3d(0.05, 0.3, 0.3), Vector3d(0.45, 0.7, 0.7));
+  RunReport report;
+  const EdgeWorld near = focus_on_object(world, options, &report, nullptr);
+  EXPECT_LT(edgels_of(near), edgels_of(world));
+  const std::vector<EdgePoint> points = lift_scene(near, options, &report, nullptr);
+  EXPECT_GT(points.size(), 200u);
+  for (const EdgePoint& p : points) EXPECT_TRUE(options.box.contains(p.position));
+  ASSERT_FALSE(report.counts.empty());
+  EXPECT_EQ(report.counts.back().second, double(points.size()));
+}
+
+TEST(WorldStages, WhereNoViewsAgreeThereIsTooLittle) {
+  EdgeWorld world = world_of(false);
+  for (EdgelMap& map : world.maps) map = ideal_edgels(world.views[0], {});
+  RunReport report;
+  EXPECT_THROW(lift_scene(world, {}, &report, nullptr), TooLittleError);
+}
+
+}  // namespace
+}  // namespace sketchsplat
