@@ -63,7 +63,7 @@ class Assembly {
     int other = -1;
     for (int k = 0; k < int(cycles_.size()); ++k) {
       const double rise = (height(cycles_[k]) - height(c)) * c.turns;
-      if (cycles_[k].turns != -c.turns || rise <= 0) continue;
+      if (cycles_[k].turns != -c.turns || cycles_[k].part == c.part || rise <= 0) continue;
       if (other < 0 || rise < (height(cycles_[other]) - height(c)) * c.turns) other = k;
     }
     // The next one upwards must look back at this one: else a cycle of the same sense is between.
@@ -84,8 +84,9 @@ class Assembly {
   }
   bool blocked(int low, int high) const {
     for (int k = 0; k < int(cycles_.size()); ++k)
-      if (k != low && cycles_[k].turns == cycles_[low].turns &&
-          height(cycles_[k]) > height(cycles_[low]) && height(cycles_[k]) < height(cycles_[high]))
+      if (cycles_[k].part != cycles_[low].part && cycles_[k].part != cycles_[high].part &&
+          cycles_[k].turns == cycles_[low].turns && height(cycles_[k]) > height(cycles_[low]) &&
+          height(cycles_[k]) < height(cycles_[high]))
         return true;
     return false;
   }
@@ -146,6 +147,21 @@ int crossings_above(const Matrix2Xd& polygon, const Vector2d& p, double period) 
   return count;
 }
 
+// Around a cell in its layout.
+struct Box {
+  Vector2d low, size;
+  Vector2d at(double u, double v) const { return low + Vector2d(u * size.x(), v * size.y()); }
+};
+
+Box box_of(const Cell& cell) {
+  Vector2d low = Vector2d::Constant(HUGE_VAL), high = -low;
+  for (const Matrix2Xd& polygon : cell.polygons) {
+    low = low.cwiseMin(polygon.rowwise().minCoeff());
+    high = high.cwiseMax(polygon.rowwise().maxCoeff());
+  }
+  return {low, high - low};
+}
+
 }  // namespace
 
 std::vector<Cell> cells_of(const Sketch& sketch, const std::vector<Eigen::Matrix3Xd>& polylines,
@@ -170,24 +186,40 @@ bool holds(const Cell& cell, const Layout& layout, const Vector2d& flat) {
 }
 
 std::vector<Vector3d> points_within(const Cell& cell, const Layout& layout, int count) {
-  Vector2d low = Vector2d::Constant(HUGE_VAL), high = -low;
-  for (const Matrix2Xd& polygon : cell.polygons) {
-    low = low.cwiseMin(polygon.rowwise().minCoeff());
-    high = high.cwiseMax(polygon.rowwise().maxCoeff());
-  }
+  const Box box = box_of(cell);
   std::vector<Vector3d> points;
-  const Vector2d size = high - low;
   for (int finer = 1; finer <= 8 && int(points.size()) < (count + 1) / 2; finer *= 2) {
     points.clear();
-    const double step = std::sqrt(size.x() * size.y() / count) / finer;
-    const int nx = std::max(1, int(size.x() / step)), ny = std::max(1, int(size.y() / step));
+    const double step = std::sqrt(box.size.x() * box.size.y() / count) / finer;
+    const int nx = std::max(1, int(box.size.x() / step)),
+              ny = std::max(1, int(box.size.y() / step));
     for (int i = 0; i < nx; ++i)
       for (int k = 0; k < ny; ++k) {
-        const Vector2d p = low + Vector2d((i + 0.5) / nx * size.x(), (k + 0.5) / ny * size.y());
+        const Vector2d p = box.at((i + 0.5) / nx, (k + 0.5) / ny);
         if (holds(cell, layout, p)) points.push_back(layout.point(p));
       }
   }
   return points;
+}
+
+std::vector<std::pair<Vector3d, Vector3d>> grid_within(const Cell& cell, const Layout& layout,
+                                                       int lines) {
+  const Box box = box_of(cell);
+  const auto at = [&](int i, int k) { return box.at((i + 0.5) / lines, (k + 0.5) / lines); };
+  std::vector<bool> inside(size_t(lines) * lines);
+  for (int i = 0; i < lines; ++i)
+    for (int k = 0; k < lines; ++k) inside[i * lines + k] = holds(cell, layout, at(i, k));
+  std::vector<std::pair<Vector3d, Vector3d>> out;
+  const auto add = [&](int i, int k, int i2, int k2) {
+    if (i2 < lines && k2 < lines && inside[i * lines + k] && inside[i2 * lines + k2])
+      out.emplace_back(layout.point(at(i, k)), layout.point(at(i2, k2)));
+  };
+  for (int i = 0; i < lines; ++i)
+    for (int k = 0; k < lines; ++k) {
+      add(i, k, i + 1, k);
+      add(i, k, i, k + 1);
+    }
+  return out;
 }
 
 }  // namespace sketchsplat

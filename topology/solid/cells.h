@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "sketches/face.h"
@@ -32,5 +33,11 @@ bool holds(const Cell& cell, const Layout& layout, const Eigen::Vector2d& flat);
 /// About `count` points spread evenly over a cell, on the surface and off its border; at least one
 /// unless it is too thin.
 std::vector<Eigen::Vector3d> points_within(const Cell& cell, const Layout& layout, int count);
+
+/// Pairs of neighbouring points of a grid of `lines` x `lines` over a cell: pieces of its surface,
+/// but for the bend between the two.
+std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> grid_within(const Cell& cell,
+                                                                     const Layout& layout,
+                                                                     int lines);
 
 }  // namespace sketchsplat

@@ -75,6 +75,14 @@ int border(int left, int right, Programme* programme) {
   return b;
 }
 
+// Two crossings of the boundary at least, or the price is paid; a cell may be crossed twice.
+void cover(const Cover& cover, Programme* programme) {
+  std::map<int, double> sum;
+  for (const int c : cover.cells) sum[c] += 1;
+  sum[programme->add_column(cover.price)] = 2;
+  programme->add_row(sum, 'G', 2);
+}
+
 void exclude(const ChosenCells& other, Programme* programme) {
   std::map<int, double> sum;
   int chosen = 0;
@@ -101,6 +109,8 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
     faces[s][cells + s] -= 2;
     programme.add_row(faces[s], 'E', 0);
   }
+  for (const auto& [a, b] : choice.exclusive) programme.add_row({{a, 1}, {b, 1}}, 'L', 1);
+  for (const Cover& c : choice.covers) cover(c, &programme);
   for (const ChosenCells& other : others) exclude(other, &programme);
 
   const std::vector<bool> values = programme.solve(seconds);
@@ -110,6 +120,11 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   for (int c = 0; c < cells; ++c) out.price += out.cell[c] ? choice.cell_price[c] : 0;
   for (int s = 0; s < strokes; ++s)
     out.price += out.stroke[s] ? choice.used_price[s] : choice.unused_price[s];
+  for (const Cover& c : choice.covers) {
+    int met = 0;
+    for (const int cell : c.cells) met += out.cell[cell];
+    out.price += met < 2 ? c.price : 0;
+  }
   return out;
 }
 

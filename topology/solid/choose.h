@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <utility>
 #include <vector>
 
-#include "topology/solid/cells.h"
+#include "topology/solid/evidence.h"
 
 namespace sketchsplat {
 
 /// Which cells bound the solid, and what each choice costs [nat].
 struct CellChoice {
   std::vector<Cell> cells;
-  std::vector<double> cell_price;    ///< per cell: of its being a part of the boundary
-  std::vector<double> used_price;    ///< per stroke: of its being an edge
-  std::vector<double> unused_price;  ///< per stroke: of its being none
+  std::vector<double> cell_price;              ///< per cell: of its being a part of the boundary
+  std::vector<double> used_price;              ///< per stroke: of its being an edge
+  std::vector<double> unused_price;            ///< per stroke: of its being none
+  std::vector<std::pair<int, int>> exclusive;  ///< pairs of cells, of which one may be chosen
+  std::vector<Cover> covers;                   ///< each costs unless two of its cells are chosen
 };
 
 struct ChosenCells {

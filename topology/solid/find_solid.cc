@@ -13,6 +13,7 @@
 #include "topology/solid/adjust.h"
 #include "topology/solid/assemble.h"
 #include "topology/solid/choose.h"
+#include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
 #include "topology/solid/infer_edges.h"
 
@@ -72,15 +73,19 @@ double unused_price(const Evidence& evidence) {
   return std::clamp(std::log(c / (1 - c)), kLeast, kMost);
 }
 
-CellChoice price(const Completed& all, const SolidOptions& options, const CellWitness& witness) {
+CellChoice price(const Completed& all, double tolerance, const SolidOptions& options,
+                 const SolidEvidence& evidence) {
   CellChoice choice;
   for (int i = 0; i < int(all.surfaces.size()); ++i)
     for (Cell& cell : cells_of(all.sketch, all.polylines, all.surfaces[i], i))
       choice.cells.push_back(std::move(cell));
   drop_doubles(&choice.cells, all.surfaces);
-  for (const Cell& cell : choice.cells)
-    choice.cell_price.push_back(options.face_price +
-                                (witness ? witness(all.surfaces[cell.surface].surface, cell) : 0));
+  const EvidenceOfCells weighed = weigh_cells(evidence, all.surfaces, choice.cells,
+                                              largest_extent(all.sketch), options.evidence);
+  for (const double against : weighed.against)
+    choice.cell_price.push_back(options.face_price + against);
+  choice.covers = weighed.covers;
+  choice.exclusive = crossing_cells(all.surfaces, choice.cells, tolerance);
   for (int s = 0; s < all.sketch.size(); ++s) {
     const double faint = all.smooth[s] ? options.smooth_price : options.faint_price;
     choice.used_price.push_back(all.inferred[s] ? faint : 0);
@@ -92,10 +97,11 @@ CellChoice price(const Completed& all, const SolidOptions& options, const CellWi
 }  // namespace
 
 SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
-                       const CellWitness& witness) {
+                       const SolidEvidence& evidence) {
   SolidSearch out;
-  const Completed all = complete(sketch, options.tolerance * largest_extent(sketch));
-  const CellChoice choice = price(all, options, witness);
+  const double tolerance = options.tolerance * largest_extent(sketch);
+  const Completed all = complete(sketch, tolerance);
+  const CellChoice choice = price(all, tolerance, options, evidence);
   out.surfaces = int(all.surfaces.size());
   out.cells = int(choice.cells.size());
   const ChosenCells best = choose_cells(choice, {}, options.seconds);

@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sketches/solid.h"
-#include "topology/solid/cells.h"
+#include "topology/solid/evidence.h"
 
 namespace sketchsplat {
 
-/// What the images say against a piece of a surface being a face [nat], 0 or more; asked for cells
-/// that no stroke crosses.
-using CellWitness = std::function<double(const Surface&, const Cell&)>;
-
 struct SolidOptions {
   double tolerance = 1.5e-3;  ///< of a stroke from the surface that it lies on; of the extent
-  double face_price = 1;      ///< [nat] of a face
+  double face_price = 3;      ///< [nat] of a face
   double smooth_price = 1;    ///< [nat] of an inferred edge along which surfaces touch
   double faint_price = 12;    ///< [nat] of one that images should have shown
   double margin = 5;          ///< [nat] by which the second-best choice must be worse
   double seconds = 10;        ///< for the choice
+  EvidencePrices evidence;
 };
 
 struct SolidSearch {
@@ -30,12 +26,13 @@ struct SolidSearch {
   std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending
   double margin = 0;          ///< [nat] by which the second-best choice is worse
   int surfaces = 0, cells = 0;
+  double uncovered = 0;  ///< share of the rays through the object that meet no faces
 };
 
 /// The solid whose faces explain the strokes, if one does and no other does about as well: surfaces
 /// through strokes, cells between strokes on them, and of these the choice of least price in which
 /// every edge has two faces.
 SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options = {},
-                       const CellWitness& witness = nullptr);
+                       const SolidEvidence& evidence = {});
 
 }  // namespace sketchsplat

@@ -2,7 +2,6 @@
 #include "topology/solid/surface.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace sketchsplat {
 
@@ -59,12 +58,8 @@ Matrix2Xd Layout::flat(const Matrix3Xd& polyline) const {
 
 namespace {
 
-Crossings keep_inside(double t0, double t1, int count) {
-  Crossings out;
-  if (count == 2 && t0 > t1) std::swap(t0, t1);
-  for (const double t : {t0, t1})
-    if (out.count < count && t >= 0 && t <= 1) out.t[out.count++] = t;
-  return out;
+void add_inside(double t, Crossings* out) {
+  if (t >= 0 && t <= 1) out->t[out->count++] = t;
 }
 
 }  // namespace
@@ -72,15 +67,22 @@ Crossings keep_inside(double t0, double t1, int count) {
 Crossings crossings(const Surface& s, const Vector3d& from, const Vector3d& to) {
   const Vector3d p = from - s.origin, d = to - from;
   const double pz = p.dot(s.axis), dz = d.dot(s.axis);
-  if (s.kind == SurfaceKind::kPlane) return keep_inside(-pz / dz, 0, dz == 0 ? 0 : 1);
+  Crossings out;
+  if (s.kind == SurfaceKind::kPlane) {
+    if (dz != 0) add_inside(-pz / dz, &out);
+    return out;
+  }
   // Squared distance from the axis less the squared radius there: a quadratic in t.
   const Vector3d po = p - s.axis * pz, dout = d - s.axis * dz;
   const double r = s.radius + s.slope * pz, dr = s.slope * dz;
   const double a = dout.squaredNorm() - dr * dr, b = po.dot(dout) - r * dr,
                c = po.squaredNorm() - r * r;
   const double root = b * b - a * c;
-  if (!(root > 0) || a == 0) return {};
-  return keep_inside((-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a, 2);
+  if (!(root > 0) || a == 0) return out;
+  const double first = (-b - std::sqrt(root)) / a, second = (-b + std::sqrt(root)) / a;
+  add_inside(std::min(first, second), &out);
+  add_inside(std::max(first, second), &out);
+  return out;
 }
 
 }  // namespace sketchsplat
