@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 
 # The program looks for what it loads in ../lib/sketchsplat beside itself: see plugin_path.cc.
 install(TARGETS sketchsplat RUNTIME DESTINATION bin COMPONENT program)
-install(TARGETS sketchsplat_charts sketchsplat_image_formats sketchsplat_synthesis
+install(TARGETS sketchsplat_brep sketchsplat_charts sketchsplat_image_formats sketchsplat_synthesis
   LIBRARY DESTINATION lib/sketchsplat COMPONENT program)
 
 # The library for programs of others: find_package(sketchsplat), sketchsplat::sketchsplat.

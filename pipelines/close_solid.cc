@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 // slowly, edges are off by about a pixel.
 constexpr double kTolerancePx = 1.2, kLeastTolerance = 1.5e-3;
 constexpr int kSightsPerStroke = 8;  // of one view
-constexpr int kMaskViews = 24, kMaskGrid = 20;
+constexpr int kMaskViews = 24, kMaskGrid = 32;
 constexpr int kClearPx = 3;  // [px] around a pixel that the mask must agree on
 
 void add_sights(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {

@@ -38,7 +38,7 @@ struct Surface {
 struct SolidFace {
   int surface = -1;         ///< index into Solid::surfaces
   bool reversed = false;    ///< out of the material is against the surface's normal: away from the
-                            ///< axis or centre, of a plane its axis
+                            ///< axis, the centre or a torus' circle of centres, of a plane its axis
   std::vector<Loop> loops;  ///< over the strokes of Solid::edges
 };
 
@@ -51,5 +51,12 @@ struct Solid {
   std::vector<SolidFace> faces;
   double gap = 0;  ///< largest distance of a curve from the surfaces that it bounds, world units
 };
+
+/// Signed distance [world units] of a point from a surface: positive on the side of its normal,
+/// which points away from the axis, the centre or the circle of centres; of a plane along its axis.
+double surface_distance(const Surface& surface, const Eigen::Vector3d& point);
+
+/// The same solid, larger by a factor > 0 about the origin.
+Solid scaled(Solid solid, double factor);
 
 }  // namespace sketchsplat

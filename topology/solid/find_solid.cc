@@ -38,13 +38,13 @@ Completed complete(const Sketch& sketch, double tolerance) {
   out.smooth = out.inferred;
   for (int round = 0;; ++round) {
     out.surfaces = find_surfaces(out.sketch, out.polylines, tolerance);
-    const std::vector<ImpliedLine> lines =
-        implied_lines(sketch, out.sketch, out.surfaces, tolerance);
-    if (lines.empty() || round == kRounds) return out;
-    for (const ImpliedLine& line : lines) {
-      out.sketch.add_stroke(StrokeKind::kLine, line.begin, line.end, {});
+    const std::vector<ImpliedStroke> implied =
+        implied_strokes(sketch, out.sketch, out.surfaces, tolerance);
+    if (implied.empty() || round == kRounds) return out;
+    for (const ImpliedStroke& s : implied) {
+      out.sketch.add_stroke(s.kind, s.begin, s.end, s.handles);
       out.inferred.push_back(true);
-      out.smooth.push_back(line.smooth);
+      out.smooth.push_back(s.smooth);
     }
     out.polylines = polylines_of(out.sketch);
   }
@@ -67,10 +67,11 @@ void drop_doubles(std::vector<Cell>* cells, const std::vector<SurfaceStrokes>& s
 
 // What it costs to say that a stroke is no edge: its log-odds of being one, within reason.
 double unused_price(const Evidence& evidence) {
-  constexpr double kUnknown = 5, kLeast = 0.5, kMost = 10;
-  if (std::isnan(evidence.confidence)) return kUnknown;
+  // Something else must have made the edgels, on top.
+  constexpr double kUnknown = 5, kLeast = 0.5, kMost = 10, kCause = 3;
+  if (std::isnan(evidence.confidence)) return kUnknown + kCause;
   const double c = std::clamp(evidence.confidence, 1e-6, 1 - 1e-6);
-  return std::clamp(std::log(c / (1 - c)), kLeast, kMost);
+  return std::clamp(std::log(c / (1 - c)), kLeast, kMost) + kCause;
 }
 
 CellChoice price(const Completed& all, double tolerance, const SolidOptions& options,

@@ -12,9 +12,9 @@ namespace sketchsplat {
 
 struct SolidOptions {
   double tolerance = 1.5e-3;  ///< of a stroke from the surface that it lies on; of the extent
-  double face_price = 3;      ///< [nat] of a face
+  double face_price = 2;      ///< [nat] of a face
   double smooth_price = 1;    ///< [nat] of an inferred edge along which surfaces touch
-  double faint_price = 12;    ///< [nat] of one that images should have shown
+  double faint_price = 4;     ///< [nat] of one that images should have shown
   double margin = 5;          ///< [nat] by which the second-best choice must be worse
   double seconds = 10;        ///< for the choice
   EvidencePrices evidence;

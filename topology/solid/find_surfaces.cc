@@ -37,10 +37,10 @@ std::optional<Round> round_of(const Sketch& sketch, int stroke) {
 bool lies_on(const Surface& surface, const Matrix3Xd& polyline, double tolerance) {
   // The middle of a line, too: its ends may be those of a chord.
   if (polyline.cols() == 2 &&
-      std::abs(signed_distance(surface, polyline.rowwise().mean())) > tolerance)
+      std::abs(surface_distance(surface, polyline.rowwise().mean())) > tolerance)
     return false;
   for (int i = 0; i < polyline.cols(); ++i)
-    if (std::abs(signed_distance(surface, polyline.col(i))) > tolerance) return false;
+    if (std::abs(surface_distance(surface, polyline.col(i))) > tolerance) return false;
   return true;
 }
 

@@ -17,9 +17,13 @@ using Eigen::Vector3d;
 
 class Inference {
  public:
-  Inference(const std::vector<int>& degree, const Sketch& sketch,
-            const std::vector<SurfaceStrokes>& surfaces, double tolerance)
-      : degree_(degree), sketch_(sketch), surfaces_(surfaces), tolerance_(tolerance) {
+  Inference(const Sketch& seen, const Sketch& sketch, const std::vector<SurfaceStrokes>& surfaces,
+            double tolerance)
+      : seen_(seen.size()),
+        degree_(node_degrees(seen)),
+        sketch_(sketch),
+        surfaces_(surfaces),
+        tolerance_(tolerance) {
     for (const Stroke& s : sketch.strokes)
       if (!is_closed(s.kind)) joined_.insert(std::minmax(s.begin, s.end));
     for (const SurfaceStrokes& s : surfaces) {
@@ -31,7 +35,7 @@ class Inference {
     }
   }
 
-  std::vector<ImpliedLine> find() {
+  std::vector<ImpliedStroke> find() {
     for (size_t i = 0; i < surfaces_.size(); ++i)
       if (surfaces_[i].surface.kind != SurfaceKind::kPlane) add_rulings(int(i));
     for (size_t i = 0; i < surfaces_.size(); ++i)
@@ -39,8 +43,10 @@ class Inference {
         if (surfaces_[i].surface.kind == SurfaceKind::kPlane &&
             surfaces_[k].surface.kind == SurfaceKind::kPlane)
           add_meeting(int(i), int(k));
-    std::vector<ImpliedLine> out;
-    for (const auto& [ends, smooth] : lines_) out.push_back({ends.first, ends.second, smooth});
+    std::vector<ImpliedStroke> out;
+    for (const auto& [ends, smooth] : lines_)
+      out.push_back({StrokeKind::kLine, ends.first, ends.second, {}, smooth});
+    add_rims(&out);
     return out;
   }
 
@@ -76,6 +82,36 @@ class Inference {
     add_neighbours(&along, false);
   }
 
+  void add_rims(std::vector<ImpliedStroke>* out) const {
+    for (int s = 0; s < seen_; ++s) {
+      if (sketch_.strokes[s].kind != StrokeKind::kCircle || has_twin(s)) continue;
+      const ControlPoints rim = control_points(sketch_, s);
+      const Vector3d axis = rim.p[1].normalized();
+      for (const SurfaceStrokes& plane : surfaces_) {
+        if (plane.surface.kind != SurfaceKind::kPlane) continue;
+        if (std::abs(plane.surface.axis.dot(axis)) < 0.999) continue;
+        const double along = (plane.surface.origin - rim.p[0]).dot(plane.surface.axis) /
+                             axis.dot(plane.surface.axis);
+        if (std::abs(along) > 4 * tolerance_)
+          out->push_back({StrokeKind::kCircle, -1, -1, {rim.p[0] + along * axis, rim.p[1]}, false});
+      }
+    }
+  }
+
+  // Is there another circle of its radius about its axis?
+  bool has_twin(int stroke) const {
+    const ControlPoints a = control_points(sketch_, stroke);
+    const Vector3d axis = a.p[1].normalized();
+    for (int s = 0; s < sketch_.size(); ++s) {
+      if (s == stroke || sketch_.strokes[s].kind != StrokeKind::kCircle) continue;
+      const ControlPoints b = control_points(sketch_, s);
+      if (axis.cross(b.p[0] - a.p[0]).norm() <= 2 * tolerance_ &&
+          std::abs(a.p[1].norm() - b.p[1].norm()) <= 2 * tolerance_)
+        return true;
+    }
+    return false;
+  }
+
   void add_neighbours(std::vector<std::pair<double, int>>* along, bool smooth) {
     std::sort(along->begin(), along->end());
     for (size_t i = 0; i + 1 < along->size(); ++i) {
@@ -88,6 +124,7 @@ class Inference {
     }
   }
 
+  int seen_;  // strokes
   std::vector<int> degree_;
   const Sketch& sketch_;
   const std::vector<SurfaceStrokes>& surfaces_;
@@ -99,10 +136,10 @@ class Inference {
 
 }  // namespace
 
-std::vector<ImpliedLine> implied_lines(const Sketch& seen, const Sketch& completed,
-                                       const std::vector<SurfaceStrokes>& surfaces,
-                                       double tolerance) {
-  return Inference(node_degrees(seen), completed, surfaces, tolerance).find();
+std::vector<ImpliedStroke> implied_strokes(const Sketch& seen, const Sketch& completed,
+                                           const std::vector<SurfaceStrokes>& surfaces,
+                                           double tolerance) {
+  return Inference(seen, completed, surfaces, tolerance).find();
 }
 
 }  // namespace sketchsplat

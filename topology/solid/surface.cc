@@ -10,11 +10,6 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-double signed_distance(const Surface& s, const Vector3d& point) {
-  return signed_distance<double>(s.kind, s.origin, s.axis, s.radius, s.slope, s.minor_radius,
-                                 point);
-}
-
 Vector3d surface_normal(const Surface& s, const Vector3d& point) {
   const Vector3d from = point - s.origin;
   if (s.kind == SurfaceKind::kPlane) return s.axis;

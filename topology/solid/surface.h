@@ -10,25 +10,6 @@
 
 namespace sketchsplat {
 
-/// Signed distance of a point from a surface, positive on the side of its normal. World units;
-/// smooth but on the axis. Parameters as scalars so that solvers may ask for derivatives.
-template <typename T>
-T signed_distance(SurfaceKind kind, const Vec3<T>& origin, const Vec3<T>& axis, const T& radius,
-                  const T& slope, const T& minor_radius, const Vec3<T>& point) {
-  using std::sqrt;
-  const Vec3<T> from = point - origin;
-  const T along = from.dot(axis);
-  if (kind == SurfaceKind::kPlane) return along;
-  if (kind == SurfaceKind::kSphere) return sqrt(from.squaredNorm() + T(1e-300)) - radius;
-  const T out = sqrt((from - axis * along).squaredNorm() + T(1e-300));
-  if (kind == SurfaceKind::kCylinder) return out - radius;
-  if (kind == SurfaceKind::kCone)
-    return (out - radius - slope * along) / sqrt(T(1) + slope * slope);
-  const T ring = out - radius;
-  return sqrt(ring * ring + along * along + T(1e-300)) - minor_radius;
-}
-double signed_distance(const Surface& surface, const Eigen::Vector3d& point);
-
 /// Unit normal at (or above) a point: out of a plane along its axis, else away from the axis, the
 /// centre, or the circle of centres.
 Eigen::Vector3d surface_normal(const Surface& surface, const Eigen::Vector3d& point);

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+#include "sketches/solid.h"
+
+namespace sketchsplat {
+
+/// Solids typed by hand. Every helper appends.
+struct SolidMaker {
+  using Vector3d = Eigen::Vector3d;
+  Solid solid;
+
+  int node(const Vector3d& p) { return solid.edges.add_node(p); }
+  int line(int a, int b) { return add(StrokeKind::kLine, a, b, {}); }
+  int arc(int a, int b, const Vector3d& apex) { return add(StrokeKind::kArc, a, b, {apex}); }
+  /// Counter-clockwise about the axis.
+  int circle(const Vector3d& centre, const Vector3d& axis, double radius) {
+    return add(StrokeKind::kCircle, -1, -1, {centre, axis.normalized() * radius});
+  }
+  int add(StrokeKind kind, int a, int b, const std::vector<Vector3d>& handles) {
+    solid.inferred.push_back(false);
+    return solid.edges.add_stroke(kind, a, b, handles);
+  }
+  void face(const Surface& surface, bool reversed, const std::vector<Loop>& loops) {
+    solid.surfaces.push_back(surface);
+    solid.faces.push_back({int(solid.surfaces.size()) - 1, reversed, loops});
+  }
+  /// A polygon of nodes, counter-clockwise from outside; its edges are found or made.
+  Loop polygon(const std::vector<int>& nodes) {
+    Loop loop;
+    for (size_t i = 0; i < nodes.size(); ++i)
+      loop.push_back(edge(nodes[i], nodes[(i + 1) % nodes.size()]));
+    return loop;
+  }
+  LoopStroke edge(int a, int b) {
+    for (int s = 0; s < solid.edges.size(); ++s) {
+      const Stroke& stroke = solid.edges.strokes[s];
+      if (stroke.begin == a && stroke.end == b) return {s, true};
+      if (stroke.begin == b && stroke.end == a) return {s, false};
+    }
+    return {line(a, b), true};
+  }
+  static Surface plane(const Vector3d& p, const Vector3d& n) {
+    return {SurfaceKind::kPlane, p, n.normalized()};
+  }
+  static Surface cylinder(const Vector3d& p, const Vector3d& axis, double radius) {
+    return {SurfaceKind::kCylinder, p, axis.normalized(), radius};
+  }
+  /// Of the corners 0..3 below and 4..7 above, each counter-clockwise from above.
+  std::vector<int> box_nodes(const Vector3d& low, const Vector3d& high) {
+    std::vector<int> n;
+    for (const double z : {low.z(), high.z()})
+      for (const auto& [x, y] : {std::pair(low.x(), low.y()), std::pair(high.x(), low.y()),
+                                 std::pair(high.x(), high.y()), std::pair(low.x(), high.y())})
+        n.push_back(node({x, y, z}));
+    return n;
+  }
+  Vector3d at(int n) const { return solid.edges.nodes.col(n); }
+  /// The sides of a box; top and bottom with holes.
+  void box(const Vector3d& low, const Vector3d& high, const std::vector<Loop>& top_holes = {},
+           const std::vector<Loop>& bottom_holes = {}) {
+    const std::vector<int> n = box_nodes(low, high);
+    const auto side = [&](int a, int b, int c, int d, const std::vector<Loop>& holes) {
+      std::vector<Loop> loops = {polygon({n[a], n[b], n[c], n[d]})};
+      loops.insert(loops.end(), holes.begin(), holes.end());
+      const Vector3d normal = (at(n[b]) - at(n[a])).cross(at(n[d]) - at(n[a]));
+      face(plane(at(n[a]), normal), false, loops);
+    };
+    side(0, 3, 2, 1, bottom_holes);
+    side(4, 5, 6, 7, top_holes);
+    side(0, 1, 5, 4, {});
+    side(1, 2, 6, 5, {});
+    side(2, 3, 7, 6, {});
+    side(3, 0, 4, 7, {});
+  }
+};
+
+inline Solid box_solid(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  SolidMaker m;
+  m.box(low, high);
+  return m.solid;
+}
+
+/// A plate 2 x 1 x 0.5 from the origin with a hole of radius 0.25 about (0.6, 0.5); `depth` of it
+/// from above, a through hole if 0.5.
+inline Solid plate_with_hole(double depth) {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  const Vector3d up = Vector3d::UnitZ();
+  const bool through = depth >= 0.5;
+  const int top = m.circle({0.6, 0.5, 0.5}, up, 0.25);
+  const int bottom = m.circle({0.6, 0.5, 0.5 - depth}, up, 0.25);
+  m.box({0, 0, 0}, {2, 1, 0.5}, {{{top, false}}},
+        through ? std::vector<Loop>{{{bottom, true}}} : std::vector<Loop>());
+  // From inside of the hole its wall is seen from outside of the material.
+  m.face(SolidMaker::cylinder({0.6, 0.5, 0}, up, 0.25), true, {{{top, true}}, {{bottom, false}}});
+  if (!through) m.face(SolidMaker::plane({0.6, 0.5, 0.5 - depth}, up), false, {{{bottom, true}}});
+  return m.solid;
+}
+
+/// A cone about z: radius 1 at z = 0, and `top` at z = 1; 0 is an apex.
+inline Solid cone_solid(double top) {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  const Vector3d up = Vector3d::UnitZ();
+  const int base = m.circle({0, 0, 0}, up, 1);
+  m.face(SolidMaker::plane({0, 0, 0}, -up), false, {{{base, false}}});
+  const Surface side = {SurfaceKind::kCone, Vector3d(0, 0, 0), up, 1, top - 1};
+  if (top > 0) {
+    const int upper = m.circle({0, 0, 1}, up, top);
+    m.face(SolidMaker::plane({0, 0, 1}, up), false, {{{upper, true}}});
+    m.face(side, false, {{{base, true}}, {{upper, false}}});
+  } else {
+    m.face(side, false, {{{base, true}}});
+  }
+  return m.solid;
+}
+
+inline Solid sphere_solid() {
+  SolidMaker m;
+  m.face({SurfaceKind::kSphere, {1, 2, 3}, Eigen::Vector3d::UnitZ(), 0.5}, false, {});
+  return m.solid;
+}
+
+/// Half a cylinder of radius 1 and height 2 on its flat side: arcs and lines.
+inline Solid half_cylinder() {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  int n[4];
+  for (int k = 0; k < 2; ++k)
+    n[2 * k] = m.node({1, 0, 2.0 * k}), n[2 * k + 1] = m.node({-1, 0, 2.0 * k});
+  const int low = m.arc(n[0], n[1], {0, 1, 0}), high = m.arc(n[2], n[3], {0, 1, 2});
+  const int right = m.line(n[0], n[2]), left = m.line(n[1], n[3]);
+  const int front_low = m.line(n[0], n[1]), front_high = m.line(n[2], n[3]);
+  m.face(SolidMaker::plane({0, 0, 0}, -Vector3d::UnitZ()), false,
+         {{{low, false}, {front_low, true}}});
+  m.face(SolidMaker::plane({0, 0, 2}, Vector3d::UnitZ()), false,
+         {{{high, true}, {front_high, false}}});
+  m.face(SolidMaker::cylinder({0, 0, 0}, Vector3d::UnitZ(), 1), false,
+         {{{low, true}, {left, true}, {high, false}, {right, false}}});
+  m.face(SolidMaker::plane({0, 0, 0}, -Vector3d::UnitY()), false,
+         {{{front_low, false}, {right, true}, {front_high, true}, {left, false}}});
+  return m.solid;
+}
+
+}  // namespace sketchsplat

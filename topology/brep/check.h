@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <TopoDS_Shape.hxx>
+#include <string>
+
+#include "topology/brep/build_solid.h"
+#include "topology/brep/solid_step.h"
+
+namespace sketchsplat::brep {
+
+/// Turns the solid inside out if need be, and measures and checks it, in its own units. `extent`:
+/// longest side of its box.
+SolidCheck check_solid(const Solid& solid, double extent, BuiltSolid* built);
+
+/// What BRepCheck_Analyzer finds first, as a clause; empty if the shape is valid.
+std::string fault_of(const TopoDS_Shape& shape);
+
+/// Largest tolerance of an edge or a vertex.
+double tolerance_of(const TopoDS_Shape& shape);
+
+}  // namespace sketchsplat::brep

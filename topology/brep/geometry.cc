@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "topology/brep/geometry.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <GeomConvert.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <Geom_BezierCurve.hxx>
+#include <Geom_Circle.hxx>
+#include <Geom_ConicalSurface.hxx>
+#include <Geom_CylindricalSurface.hxx>
+#include <Geom_Ellipse.hxx>
+#include <Geom_Line.hxx>
+#include <Geom_Plane.hxx>
+#include <Geom_SphericalSurface.hxx>
+#include <Geom_ToroidalSurface.hxx>
+#include <TColgp_Array1OfPnt.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "sketches/conic.h"
+#include "sketches/curve.h"
+#include "sketches/step_file.h"
+
+namespace sketchsplat::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+EdgeCurve line_between(const Vector3d& begin, const Vector3d& end) {
+  const double length = (end - begin).norm();
+  if (!(length > 1e-9)) throw Refused("an edge has no length");
+  return {new Geom_Line(to_point(begin), to_direction((end - begin) / length)), 0, length, false};
+}
+
+Handle(Geom_Curve)
+    circle(const Vector3d& centre, const Vector3d& normal, const Vector3d& x, double radius) {
+  return new Geom_Circle(gp_Ax2(to_point(centre), to_direction(normal), to_direction(x)), radius);
+}
+
+Handle(Geom_Curve) ellipse(const Vector3d& centre, const EllipseAxes& axes) {
+  const double major = axes.major.norm(), minor = axes.minor.norm();
+  if (!(minor > 1e-9)) throw Refused("an ellipse has no width");
+  const gp_Ax2 frame(to_point(centre), to_direction(axes.major.cross(axes.minor).normalized()),
+                     to_direction(axes.major / major));
+  return new Geom_Ellipse(frame, std::max(major, minor), minor);
+}
+
+EdgeCurve arc(const Sketch& sketch, int stroke, const ControlPoints& c, double flat) {
+  const CircleParameters k = circle_parameters(sketch, stroke);
+  const double sagitta = k.straight ? 0 : 2 * k.radius * std::pow(std::sin(k.angle / 4), 2);
+  if (!(sagitta > flat)) return line_between(c.p[0], c.p[2]);
+  return {circle(k.centre, k.normal, (c.p[0] - k.centre).normalized(), k.radius), 0, k.angle,
+          false};
+}
+
+EdgeCurve elliptic(const ControlPoints& c, double flat) {
+  const EllipticArcParameters e = elliptic_arc_parameters(c);
+  const Vector3d rise = c.p[1] - (c.p[0] + c.p[3]) / 2;
+  if (e.straight || !(rise.norm() > flat)) return line_between(c.p[0], c.p[3]);
+  double turn = 0;
+  const EllipseAxes axes = principal_axes(e.p, e.q, &turn);
+  return {ellipse(e.centre, axes), -e.half_angle - turn, e.half_angle - turn, false};
+}
+
+EdgeCurve cubic(const ControlPoints& c) {
+  TColgp_Array1OfPnt poles(1, 4);
+  for (int i = 0; i < 4; ++i) poles(i + 1) = to_point(c.p[i]);
+  const Handle(Geom_BezierCurve) bezier = new Geom_BezierCurve(poles);
+  return {GeomConvert::CurveToBSplineCurve(bezier), 0, 1, false};
+}
+
+// Half-angle 0 .. pi / 2 between an axis and the point of the border nearest to it, as a cosine.
+double nearest_to_axis(const Vector3d& axis, const Vector3d& centre,
+                       const std::vector<Vector3d>& border) {
+  double most = 0;
+  for (const Vector3d& p : border)
+    most = std::max(most, std::abs(axis.dot((p - centre).normalized())));
+  return most;
+}
+
+// Poles are where parameters mean nothing, so they stay away from the border.
+Vector3d sphere_axis(const Surface& surface, const std::vector<Vector3d>& border) {
+  std::vector<Vector3d> candidates = {surface.axis};
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = 0; z <= 1; ++z)
+        if (x != 0 || y != 0 || z != 0) candidates.push_back(Vector3d(x, y, z).normalized());
+  // Normal of a circle, and directions square to it.
+  if (!border.empty()) {
+    Vector3d mean = Vector3d::Zero();
+    for (const Vector3d& p : border) mean += p / double(border.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Vector3d& p : border) spread += (p - mean) * (p - mean).transpose();
+    const Eigen::Matrix3d principal =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+    for (int k = 0; k < 3; ++k) candidates.push_back(principal.col(k));
+  }
+  Vector3d best = surface.axis;
+  double least = 2;
+  for (const Vector3d& axis : candidates) {
+    const double nearest = nearest_to_axis(axis, surface.origin, border);
+    if (nearest < least - 0.05) best = axis, least = nearest;
+  }
+  return best;
+}
+
+Handle(Geom_Surface) cone(const Surface& s, const std::vector<Vector3d>& border) {
+  double along = 0;
+  for (const Vector3d& p : border) along += (p - s.origin).dot(s.axis) / double(border.size());
+  const double radius = s.radius + s.slope * along;
+  // Beyond the apex the radius grows again, the other way.
+  const double slope = radius < 0 ? -s.slope : s.slope;
+  const Vector3d axis = slope > 0 ? s.axis : Vector3d(-s.axis);
+  const Vector3d origin = s.origin + along * s.axis;
+  if (!(std::abs(radius) > 1e-9) || !(std::abs(slope) > 1e-9)) throw Refused("a cone has no slope");
+  const gp_Ax3 frame(to_point(origin), to_direction(axis),
+                     to_direction(step::plain_direction(axis)));
+  return new Geom_ConicalSurface(frame, std::atan(std::abs(slope)), std::abs(radius));
+}
+
+}  // namespace
+
+EdgeCurve curve_of(const Sketch& sketch, int stroke, double flat) {
+  const ControlPoints c = control_points(sketch, stroke);
+  switch (sketch.strokes[stroke].kind) {
+    case StrokeKind::kLine:
+      return line_between(c.p[0], c.p[1]);
+    case StrokeKind::kArc:
+      return arc(sketch, stroke, c, flat);
+    case StrokeKind::kCircle: {
+      const CircleParameters k = circle_parameters(sketch, stroke);
+      if (!(k.radius > 1e-9)) throw Refused("a circle has no radius");
+      const Vector3d x = step::plain_direction(k.normal);
+      return {circle(k.centre, k.normal, x, k.radius), 0, 2 * M_PI, true};
+    }
+    case StrokeKind::kEllipse:
+      return {ellipse(c.p[0], principal_axes(c.p[1], c.p[2])), 0, 2 * M_PI, true};
+    case StrokeKind::kBezier:
+      return cubic(c);
+    case StrokeKind::kEllipticArc:
+      return elliptic(c, flat);
+  }
+  throw Refused("a curve is of no kind");
+}
+
+Handle(Geom_Surface) surface_of(const Surface& s, const std::vector<Vector3d>& border) {
+  const bool round = s.kind != SurfaceKind::kPlane && s.kind != SurfaceKind::kCone;
+  if (!s.origin.allFinite() || !(std::abs(s.axis.norm() - 1) < 1e-6))
+    throw Refused("a surface has no axis");
+  if (round && !(s.radius > 1e-9)) throw Refused("a surface has no radius");
+  const Vector3d axis = s.kind == SurfaceKind::kSphere ? sphere_axis(s, border) : s.axis;
+  const gp_Ax3 frame(to_point(s.origin), to_direction(axis),
+                     to_direction(step::plain_direction(axis)));
+  switch (s.kind) {
+    case SurfaceKind::kPlane:
+      return new Geom_Plane(frame);
+    case SurfaceKind::kCylinder:
+      return new Geom_CylindricalSurface(frame, s.radius);
+    case SurfaceKind::kCone:
+      return cone(s, border);
+    case SurfaceKind::kSphere:
+      return new Geom_SphericalSurface(frame, s.radius);
+    case SurfaceKind::kTorus:
+      if (!(s.minor_radius > 1e-9) || !(s.minor_radius < s.radius))
+        throw Refused("a torus runs through itself");
+      return new Geom_ToroidalSurface(frame, s.radius, s.minor_radius);
+  }
+  throw Refused("a surface is of no kind");
+}
+
+}  // namespace sketchsplat::brep

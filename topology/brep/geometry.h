@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <Geom_Curve.hxx>
+#include <Geom_Surface.hxx>
+#include <gp_Dir.hxx>
+#include <gp_Pnt.hxx>
+#include <stdexcept>
+#include <vector>
+
+#include "sketches/solid.h"
+
+namespace sketchsplat::brep {
+
+/// Why a solid cannot be built, in one clause. Nobody outside of this folder sees it.
+struct Refused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+inline gp_Pnt to_point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+inline gp_Dir to_direction(const Eigen::Vector3d& d) { return {d.x(), d.y(), d.z()}; }
+inline Eigen::Vector3d to_eigen(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
+
+/// A stroke between two parameters of an unbounded curve; it runs as the parameter grows.
+struct EdgeCurve {
+  Handle(Geom_Curve) curve;
+  double first = 0, last = 0;
+  bool closed = false;  ///< any parameter may be the first one, last - first is the period
+};
+/// Lines, circles and ellipses as such, cubics as B-splines. Arcs with a sagitta below `flat` are
+/// lines. Throws Refused if the stroke has no length.
+EdgeCurve curve_of(const Sketch& sketch, int stroke, double flat);
+
+/// The surface as OpenCASCADE has it, its normal as Surface has it. A cone has its apex below its
+/// boundary, whose points are given; a sphere's poles keep away from them.
+/// Throws Refused if there is no such surface.
+Handle(Geom_Surface) surface_of(const Surface& surface, const std::vector<Eigen::Vector3d>& border);
+
+}  // namespace sketchsplat::brep

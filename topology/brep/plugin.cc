@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#include "topology/brep/plugin.h"
+
+namespace {
+
+const sketchsplat::BrepPlugin kPlugin = {
+    sketchsplat::write_solid_step,
+};
+
+}  // namespace
+
+extern "C" const sketchsplat::BrepPlugin* sketchsplat_brep_plugin() { return &kPlugin; }

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "topology/brep/solid_step.h"
+
+namespace sketchsplat {
+
+// Between the program and the plug-in with OpenCASCADE that knows of solids.
+
+/// The plug-in's functions; they throw what those of their headers throw.
+struct BrepPlugin {
+  SolidCheck (*write_solid_step)(const Solid& solid, const std::string& path,
+                                 const StepSolidOptions& options);
+};
+
+constexpr char kBrepPluginFile[] = "sketchsplat_brep.so";
+constexpr char kBrepPluginSymbol[] = "sketchsplat_brep_plugin";
+
+}  // namespace sketchsplat
