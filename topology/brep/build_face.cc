@@ -168,7 +168,7 @@ class FaceBuilder {
                         Precision::Confusion());
     builder_.Range(edge, std::min(from, to), std::max(from, to));
     if (from > to) edge.Reverse();
-    return {edge, line, 0};
+    return {edge, Handle(Geom2d_Curve)(line), 0};
   }
 
   // Begins at the seam, on its left side or, if `far`, a turn further; a pole has no parts.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Solid.hxx>
 #include <vector>
 

@@ -11,6 +11,7 @@
 #include "sketches/curve.h"
 #include "topology/brep/build_solid.h"
 #include "topology/brep/check.h"
+#include "topology/brep/geometry.h"
 #include "topology/brep/step_writer.h"
 
 namespace sketchsplat {
@@ -38,7 +39,7 @@ void write_scaled(const TopoDS_Shape& shape, double millimetres_per_unit, const 
                   const StepSolidOptions& options) {
   gp_Trsf scale;
   scale.SetScaleFactor(millimetres_per_unit);
-  const BRepBuilderAPI_Transform transform(shape, scale, /*theCopyGeom=*/true);
+  BRepBuilderAPI_Transform transform(shape, scale, /*theCopyGeom=*/true);
   brep::write_step_file(transform.Shape(), options.name, options.unit, path);
 }
 
