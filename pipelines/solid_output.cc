@@ -38,6 +38,8 @@ std::string solid_json(const SolidOutcome& outcome) {
   const SolidSearch& search = outcome.search;
   json["doubtful_curves"] = search.doubtful;
   json["margin_nat"] = search.margin;
+  json["mask_rays"] = search.rays;
+  json["mask_rays_contradicted"] = search.contradicted;
   json["surfaces_tried"] = search.surfaces;
   json["cells_tried"] = search.cells;
   if (search.solid) {

@@ -47,8 +47,8 @@ Moments moments_of(const Matrix3Xd& points, const Vector3d& centre) {
   return m;
 }
 
-Matrix3Xd polyline_of(const Sketch& sketch, int stroke) {
-  const int pieces = sketch.strokes[stroke].kind == StrokeKind::kLine ? 1 : 32;
+Matrix3Xd polyline_of(const Sketch& sketch, int stroke, int bent_pieces) {
+  const int pieces = sketch.strokes[stroke].kind == StrokeKind::kLine ? 1 : bent_pieces;
   Matrix3Xd out(3, pieces + 1);
   Vector3d p, d;
   for (int i = 0; i <= pieces; ++i) {
@@ -158,9 +158,9 @@ class PlaneFinder {
 
 }  // namespace
 
-std::vector<Matrix3Xd> polylines_of(const Sketch& sketch) {
+std::vector<Matrix3Xd> polylines_of(const Sketch& sketch, int pieces) {
   std::vector<Matrix3Xd> lines;
-  for (int s = 0; s < sketch.size(); ++s) lines.push_back(polyline_of(sketch, s));
+  for (int s = 0; s < sketch.size(); ++s) lines.push_back(polyline_of(sketch, s, pieces));
   return lines;
 }
 

@@ -18,8 +18,8 @@ struct PlaneStrokes {
   std::vector<int> strokes;  ///< that lie in it, ascending
 };
 
-/// 3 x n points along every stroke, from begin to end, both included: lines have two.
-std::vector<Eigen::Matrix3Xd> polylines_of(const Sketch& sketch);
+/// 3 x (pieces + 1) points along every stroke, from begin to end, both included; two along lines.
+std::vector<Eigen::Matrix3Xd> polylines_of(const Sketch& sketch, int pieces = 32);
 
 /// Planes grow from strokes that meet, and from single bent strokes, over neighbours, as long as
 /// one least-squares plane keeps all within the tolerance (world units); strokes that do not touch

@@ -147,13 +147,9 @@ int crossings_above(const Matrix2Xd& polygon, const Vector2d& p, double period) 
   return count;
 }
 
-// Around a cell in its layout.
-struct Box {
-  Vector2d low, size;
-  Vector2d at(double u, double v) const { return low + Vector2d(u * size.x(), v * size.y()); }
-};
+}  // namespace
 
-Box box_of(const Cell& cell) {
+FlatBox box_of(const Cell& cell) {
   Vector2d low = Vector2d::Constant(HUGE_VAL), high = -low;
   for (const Matrix2Xd& polygon : cell.polygons) {
     low = low.cwiseMin(polygon.rowwise().minCoeff());
@@ -161,8 +157,6 @@ Box box_of(const Cell& cell) {
   }
   return {low, high - low};
 }
-
-}  // namespace
 
 std::vector<Cell> cells_of(const Sketch& sketch, const std::vector<Eigen::Matrix3Xd>& polylines,
                            const SurfaceStrokes& surface, int index) {
@@ -186,7 +180,7 @@ bool holds(const Cell& cell, const Layout& layout, const Vector2d& flat) {
 }
 
 std::vector<Vector3d> points_within(const Cell& cell, const Layout& layout, int count) {
-  const Box box = box_of(cell);
+  const FlatBox box = box_of(cell);
   std::vector<Vector3d> points;
   for (int finer = 1; finer <= 8 && int(points.size()) < (count + 1) / 2; finer *= 2) {
     points.clear();
@@ -204,7 +198,7 @@ std::vector<Vector3d> points_within(const Cell& cell, const Layout& layout, int 
 
 std::vector<std::pair<Vector3d, Vector3d>> grid_within(const Cell& cell, const Layout& layout,
                                                        int lines) {
-  const Box box = box_of(cell);
+  const FlatBox box = box_of(cell);
   const auto at = [&](int i, int k) { return box.at((i + 0.5) / lines, (k + 0.5) / lines); };
   std::vector<bool> inside(size_t(lines) * lines);
   for (int i = 0; i < lines; ++i)

@@ -27,6 +27,19 @@ struct Cell {
 std::vector<Cell> cells_of(const Sketch& sketch, const std::vector<Eigen::Matrix3Xd>& polylines,
                            const SurfaceStrokes& surface, int index);
 
+/// Around a cell in its layout; the first coordinate says nothing where the surface closes.
+struct FlatBox {
+  Eigen::Vector2d low, size;
+  Eigen::Vector2d at(double u, double v) const {
+    return low + Eigen::Vector2d(u * size.x(), v * size.y());
+  }
+  bool holds(const Eigen::Vector2d& p, bool closed) const {
+    const Eigen::Vector2d in = p - low;
+    return in.y() >= 0 && in.y() <= size.y() && (closed || (in.x() >= 0 && in.x() <= size.x()));
+  }
+};
+FlatBox box_of(const Cell& cell);
+
 /// Is a point of the layout in the cell? The first coordinate may be off by periods.
 bool holds(const Cell& cell, const Layout& layout, const Eigen::Vector2d& flat);
 

@@ -75,12 +75,13 @@ int border(int left, int right, Programme* programme) {
   return b;
 }
 
-// Two crossings of the boundary at least, or the price is paid; a cell may be crossed twice.
+// A cell at least is chosen, or the price is paid. (A closed boundary is met twice; but along an
+// edge cells that are not adjusted yet gape.)
 void cover(const Cover& cover, Programme* programme) {
   std::map<int, double> sum;
-  for (const int c : cover.cells) sum[c] += 1;
-  sum[programme->add_column(cover.price)] = 2;
-  programme->add_row(sum, 'G', 2);
+  for (const int c : cover.cells) sum[c] = 1;
+  sum[programme->add_column(cover.price)] = 1;
+  programme->add_row(sum, 'G', 1);
 }
 
 void exclude(const ChosenCells& other, Programme* programme) {
@@ -123,7 +124,7 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   for (const Cover& c : choice.covers) {
     int met = 0;
     for (const int cell : c.cells) met += out.cell[cell];
-    out.price += met < 2 ? c.price : 0;
+    out.price += met == 0 ? c.price : 0;
   }
   return out;
 }

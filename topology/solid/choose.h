@@ -8,6 +8,12 @@
 
 namespace sketchsplat {
 
+/// A set of cells of which one must be chosen, or it costs.
+struct Cover {
+  std::vector<int> cells;
+  double price = 0;  ///< [nat]
+};
+
 /// Which cells bound the solid, and what each choice costs [nat].
 struct CellChoice {
   std::vector<Cell> cells;
@@ -15,7 +21,7 @@ struct CellChoice {
   std::vector<double> used_price;              ///< per stroke: of its being an edge
   std::vector<double> unused_price;            ///< per stroke: of its being none
   std::vector<std::pair<int, int>> exclusive;  ///< pairs of cells, of which one may be chosen
-  std::vector<Cover> covers;                   ///< each costs unless two of its cells are chosen
+  std::vector<Cover> covers;
 };
 
 struct ChosenCells {

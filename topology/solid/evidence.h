@@ -30,20 +30,21 @@ struct SolidEvidence {
 struct EvidencePrices {
   double seen_through = 0.25;  ///< share of the places behind a face that some edgel lies on
   double seen = 0.95;          ///< share of those in plain view
-  double ray = 2;              ///< [nat] of a ray that contradicts its mask
+  double ray = 1;              ///< [nat] of a ray that contradicts its mask
   double most = 60;            ///< [nat] of all that speaks against a cell
   double near = 4e-3;          ///< a line of sight ends this far before its edge; of the extent
 };
 
-/// A set of cells one of which must be a face, or it costs.
-struct Cover {
+/// Cells that rays of one outcome meet.
+struct Meeting {
   std::vector<int> cells;  ///< ascending
-  double price = 0;        ///< [nat]
+  int rays = 0;
 };
 
 struct EvidenceOfCells {
   std::vector<double> against;  ///< [nat] per cell: of its being a part of the boundary
-  std::vector<Cover> covers;    ///< rays through the object, of which two cells at least stand in
+  std::vector<Meeting> object;  ///< rays through the object: a face must stand in each
+  std::vector<Meeting> free;    ///< rays beside the object: none does
 };
 
 /// Which cells the evidence meets. `extent`: of the object.
@@ -51,5 +52,8 @@ EvidenceOfCells weigh_cells(const SolidEvidence& evidence,
                             const std::vector<SurfaceStrokes>& surfaces,
                             const std::vector<Cell>& cells, double extent,
                             const EvidencePrices& prices);
+
+/// Rays that a choice of cells contradicts.
+int contradicted(const EvidenceOfCells& weighed, const std::vector<bool>& chosen);
 
 }  // namespace sketchsplat

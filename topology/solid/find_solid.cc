@@ -22,6 +22,9 @@ namespace {
 
 using Eigen::Matrix3Xd;
 
+// Of bent strokes: chords stay within 3e-4 of a circle's radius.
+constexpr int kPieces = 128;
+
 // A sketch with the lines that surfaces imply, and which surfaces they lie on.
 struct Completed {
   Sketch sketch;
@@ -33,7 +36,7 @@ struct Completed {
 // Lines make planes known, and these further lines: a slot's straight sides hang on its rulings.
 Completed complete(const Sketch& sketch, double tolerance) {
   constexpr int kRounds = 3;
-  Completed out{sketch, polylines_of(sketch), {}, {}, {}};
+  Completed out{sketch, polylines_of(sketch, kPieces), {}, {}, {}};
   out.inferred.assign(sketch.size(), false);
   out.smooth = out.inferred;
   for (int round = 0;; ++round) {
@@ -46,7 +49,7 @@ Completed complete(const Sketch& sketch, double tolerance) {
       out.inferred.push_back(true);
       out.smooth.push_back(s.smooth);
     }
-    out.polylines = polylines_of(out.sketch);
+    out.polylines = polylines_of(out.sketch, kPieces);
   }
 }
 
@@ -75,17 +78,18 @@ double unused_price(const Evidence& evidence) {
 }
 
 CellChoice price(const Completed& all, double tolerance, const SolidOptions& options,
-                 const SolidEvidence& evidence) {
+                 const SolidEvidence& evidence, EvidenceOfCells* weighed) {
   CellChoice choice;
   for (int i = 0; i < int(all.surfaces.size()); ++i)
     for (Cell& cell : cells_of(all.sketch, all.polylines, all.surfaces[i], i))
       choice.cells.push_back(std::move(cell));
   drop_doubles(&choice.cells, all.surfaces);
-  const EvidenceOfCells weighed = weigh_cells(evidence, all.surfaces, choice.cells,
-                                              largest_extent(all.sketch), options.evidence);
-  for (const double against : weighed.against)
+  *weighed = weigh_cells(evidence, all.surfaces, choice.cells, largest_extent(all.sketch),
+                         options.evidence);
+  for (const double against : weighed->against)
     choice.cell_price.push_back(options.face_price + against);
-  choice.covers = weighed.covers;
+  for (const Meeting& m : weighed->object)
+    choice.covers.push_back({m.cells, options.evidence.ray * m.rays});
   choice.exclusive = crossing_cells(all.surfaces, choice.cells, tolerance);
   for (int s = 0; s < all.sketch.size(); ++s) {
     const double faint = all.smooth[s] ? options.smooth_price : options.faint_price;
@@ -102,12 +106,15 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   SolidSearch out;
   const double tolerance = options.tolerance * largest_extent(sketch);
   const Completed all = complete(sketch, tolerance);
-  const CellChoice choice = price(all, tolerance, options, evidence);
+  EvidenceOfCells weighed;
+  const CellChoice choice = price(all, tolerance, options, evidence, &weighed);
   out.surfaces = int(all.surfaces.size());
   out.cells = int(choice.cells.size());
   const ChosenCells best = choose_cells(choice, {}, options.seconds);
   for (int s = 0; s < sketch.size(); ++s)
     if (!best.stroke[s]) out.doubtful.push_back(s);
+  out.rays = int(evidence.rays.size());
+  out.contradicted = contradicted(weighed, best.cell);
   Solid solid;
   if (!assemble(all.sketch, all.inferred, all.polylines, all.surfaces, choice.cells, best, &solid,
                 &out.why))
@@ -116,6 +123,11 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   if (!out.doubtful.empty()) {
     out.why = std::to_string(out.doubtful.size()) + " of " + std::to_string(sketch.size()) +
               " curves are no edge of the faces that close";
+    return out;
+  }
+  if (out.contradicted > options.contradicted * out.rays) {
+    out.why = "masks show otherwise along " + std::to_string(out.contradicted) + " of " +
+              std::to_string(out.rays) + " lines of sight";
     return out;
   }
   if (out.margin < options.margin) {

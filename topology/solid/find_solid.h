@@ -12,11 +12,13 @@ namespace sketchsplat {
 
 struct SolidOptions {
   double tolerance = 1.5e-3;  ///< of a stroke from the surface that it lies on; of the extent
-  double face_price = 2;      ///< [nat] of a face
+  double face_price = 3;      ///< [nat] of a face
   double smooth_price = 1;    ///< [nat] of an inferred edge along which surfaces touch
-  double faint_price = 4;     ///< [nat] of one that images should have shown
-  double margin = 5;          ///< [nat] by which the second-best choice must be worse
-  double seconds = 10;        ///< for the choice
+  double faint_price = 6;     ///< [nat] of one that images should have shown
+  double margin = 4;          ///< [nat] by which the second-best choice must be worse
+  /// Share of the rays through masks that may contradict the solid.
+  double contradicted = 2e-3;
+  double seconds = 10;  ///< for the choice
   EvidencePrices evidence;
 };
 
@@ -26,7 +28,8 @@ struct SolidSearch {
   std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending
   double margin = 0;          ///< [nat] by which the second-best choice is worse
   int surfaces = 0, cells = 0;
-  double uncovered = 0;  ///< share of the rays through the object that meet no faces
+  int rays = 0,
+      contradicted = 0;  ///< rays through pixels of masks; those that the choice is against
 };
 
 /// The solid whose faces explain the strokes, if one does and no other does about as well: surfaces

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "sketches/conic.h"
 #include "sketches/curve.h"
 #include "topology/find_planes.h"
 #include "topology/solid/surface.h"
@@ -86,6 +87,8 @@ class Finder {
       s.radius = round.radius;
       add_turned(s);
     }
+    for (int s = 0; s < sketch_.size(); ++s)
+      if (sketch_.strokes[s].kind == StrokeKind::kEllipse) add_cut_cylinders(s);
     for (const Round& a : rounds_)
       for (const Round& b : rounds_)
         if (a.stroke < b.stroke) add_cone(a, b);
@@ -102,6 +105,24 @@ class Finder {
   void add_turned(const Surface& surface) {
     const std::vector<int> on = strokes_on(surface, polylines_, tolerance_);
     if (!on_one_level(surface, polylines_, on, tolerance_)) add(surface, on);
+  }
+
+  // The two cylinders that a plane cuts in this ellipse.
+  void add_cut_cylinders(int stroke) {
+    const ControlPoints c = control_points(sketch_, stroke);
+    const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
+    const double a = axes.major.norm(), b = axes.minor.norm();
+    if (!(b > 4 * tolerance_)) return;
+    const Vector3d normal = axes.major.cross(axes.minor).normalized();
+    const double cosine = b / a, sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    for (const double sign : {-1.0, 1.0}) {
+      Surface s;
+      s.kind = SurfaceKind::kCylinder;
+      s.origin = c.p[0];
+      s.axis = normal * cosine + axes.major / a * (sign * sine);
+      s.radius = b;
+      add_turned(s);
+    }
   }
 
   void add_cone(const Round& a, const Round& b) {

@@ -16,7 +16,8 @@ struct SurfaceStrokes {
 };
 
 /// Surfaces that strokes ask for: planes of strokes that meet; cylinders and cones through an arc
-/// or circle, about its axis, that hold more than the strokes of its own plane. Of surfaces that
+/// or circle, about its axis, and cylinders cut in an ellipse, that hold more than the strokes of
+/// one plane. Of surfaces that
 /// hold the same strokes there is one. `polylines` as polylines_of(sketch); `tolerance`: distance
 /// of a stroke from its surface, world units.
 std::vector<SurfaceStrokes> find_surfaces(const Sketch& sketch,
