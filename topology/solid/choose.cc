@@ -99,6 +99,12 @@ void exclude(const ChosenCells& other, Programme* programme) {
 ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells>& others,
                          double seconds) {
   const int cells = int(choice.cells.size()), strokes = int(choice.used_price.size());
+  if (cells == 0) {  // nothing to choose, which the solver does not like
+    ChosenCells none;
+    none.stroke.assign(strokes, false);
+    for (const double price : choice.unused_price) none.price += price;
+    return none;
+  }
   Programme programme;
   for (const double price : choice.cell_price) programme.add_column(price);
   for (int s = 0; s < strokes; ++s)
