@@ -19,6 +19,8 @@ using Eigen::Vector3d;
 // How far curves may be from the surfaces that they lie on: in concave corners, where light changes
 // slowly, edges are off by about a pixel.
 constexpr double kTolerancePx = 1.2, kLeastTolerance = 1.5e-3;
+// Where no mask can contradict, how much surer the choice must be.
+constexpr double kWithoutMasks = 3;
 constexpr int kSightsPerStroke = 8;  // of one view
 constexpr int kMaskViews = 24, kMaskGrid = 32;
 constexpr int kClearPx = 3;  // [px] around a pixel that the mask must agree on
@@ -112,7 +114,9 @@ SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world,
     const double extent = largest_extent(sketch);
     if (extent > 0)
       how.tolerance = std::max(kLeastTolerance, kTolerancePx * world.footprint / extent);
-    search = find_solid(sketch, how, solid_evidence(sketch, world));
+    const SolidEvidence evidence = solid_evidence(sketch, world);
+    if (evidence.rays.empty()) how.margin *= kWithoutMasks;
+    search = find_solid(sketch, how, evidence);
   } catch (const std::runtime_error& e) {
     search.why = e.what();
   }
