@@ -252,6 +252,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
          "Pictures at least twice as large are made smaller, to no less than this; 0: never");
   f->choose("refine-poses", &o->refine_poses, {"auto", "off", "on"},
             "Move cameras with the strokes: if they seem to err, never, always");
+  f->choose("solid", &o->solid, {"auto", "off", "require"},
+            "Close the curves to a solid: if they tell one, never, or fail without");
   Field& like = f->add("like", &o->like, "SKETCH",
                        "Results of siblings, parts of the same family: a start from what they have "
                        "in common");

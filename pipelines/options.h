@@ -46,6 +46,7 @@ struct ReconstructOptions : DetectionOptions {
   /// smaller_pictures.h; 0: never.
   int least_side = 1200;
   std::string refine_poses = "auto";  ///< see refine_poses.h
+  std::string solid = "auto";         ///< "off": none is looked for; "require": must be found
   LiftOptions lift;
   LinkOptions link;
   SegmentOptions segment;

@@ -13,6 +13,7 @@
 #include "pipelines/known_scale.h"
 #include "pipelines/overlay.h"
 #include "pipelines/report.h"
+#include "pipelines/solid_output.h"
 #include "pipelines/version.h"
 #include "sketches/io.h"
 
@@ -101,6 +102,18 @@ Json json_of(const std::vector<Regularity>& regularities) {
   return out;
 }
 
+std::string product_name(const Scene& scene, const std::string& otherwise) {
+  const std::string name =
+      fs::path(scene.folder + "/.").lexically_normal().parent_path().filename().string();
+  return name.empty() ? otherwise : name;
+}
+
+StepSolidOptions solid_options(const Scene& scene, const KnownScale& scale,
+                               const OutputOptions& options) {
+  const CadOptions cad = at_scale(options.cad, scale);
+  return {product_name(scene, "solid"), cad.scale, cad.unit};
+}
+
 void write_sketch(const std::string& folder, const Reconstruction& reconstruction,
                   const Scene& scene, const std::string& options_json, const KnownScale& scale,
                   const OutputOptions& options) {
@@ -126,10 +139,7 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
   const CadOptions cad = at_scale(options.cad, scale);
   write_atomically(folder + "/sketch.obj",
                    [&](std::ostream& out) { write_obj(out, sketch, kObjDeflection, cad.scale); });
-  std::string name =
-      fs::path(scene.folder + "/.").lexically_normal().parent_path().filename().string();
-  if (name.empty()) name = "sketch";
-  const StepOptions step = step_options(sketch, name, cad);
+  const StepOptions step = step_options(sketch, product_name(scene, "sketch"), cad);
   write_atomically(folder + "/sketch.step",
                    [&](std::ostream& out) { write_step(out, sketch, step); });
   const double size = sketch_extent(sketch).size;
@@ -181,10 +191,12 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
   const Sketch& sketch = reconstruction.sketch;
   ReportPage page = {&sketch};
   KnownScale scale;
+  SolidOutcome solid;
   {
     Stage stage("write", 0, &reconstruction.report, progress);
     scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
     write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
+    solid = write_solid(folder, reconstruction.solid, solid_options(scene, scale, output_options));
     write_cameras(folder + "/cameras", reconstruction.refined);
     remove_old_overlays(folder);
     Scene seen = scene;
@@ -196,11 +208,14 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
     stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +
                  " photographs");
   }
-  const std::string report = report_json(
-      {&reconstruction, &scene, fields_json(all.list), output_options.reproducible, &scale});
+  const std::string report = report_json({&reconstruction, &scene, fields_json(all.list),
+                                          output_options.reproducible, &scale, &solid});
   write_atomically(folder + "/report.json", [&](std::ostream& out) { out << report; });
   write_atomically(folder + "/report.html",
                    [&](std::ostream& out) { out << report_html(report, page); });
+  if (reconstruct_options.solid == "require" && !solid.written)
+    throw TooLittleError(scene.folder +
+                         ": expected curves that bound a solid, found none: " + solid.why);
   return scale;
 }
 

@@ -7,6 +7,7 @@
 
 #include "datasets/errors.h"
 #include "datasets/smaller_pictures.h"
+#include "pipelines/close_solid.h"
 #include "pipelines/detectors.h"
 #include "pipelines/family_start.h"
 #include "pipelines/refine_poses.h"
@@ -48,17 +49,15 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
 
   std::vector<TagSquare> tags;
   if (options.tags) tags = measure_tags(scene, &report, progress);
-  const Scene small = detector->takes_smaller_pictures()
-                          ? with_smaller_pictures(scene, options.least_side)
-                          : scene;
+  const Scene small =
+      detector->takes_smaller_pictures() ? with_smaller_pictures(scene, options.least_side) : scene;
   EdgeWorld all = detect_scene(small, detector, tags, options, &report, progress);
   EdgeWorld near = focus_on_object(std::move(all), options, &report, progress);
   const FamilyStart family = start_from_siblings(near, options, &report, progress);
   const ReconstructOptions last = options_after(family, options);
   const bool cold = family.sketch.size() == 0;
-  const PosedStrokes posed = cold
-                                 ? pose_and_fit(std::move(near), options, &report, progress)
-                                 : PosedStrokes{std::move(near), family.sketch};
+  const PosedStrokes posed = cold ? pose_and_fit(std::move(near), options, &report, progress)
+                                  : PosedStrokes{std::move(near), family.sketch};
   const EdgeWorld& world = posed.world;
   Sketch sketch = posed.sketch;
   const std::vector<EdgeTarget> targets =
@@ -74,8 +73,14 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   tell_stop(options, &report, progress);
   const Sketch proposed = propose_hidden(sketch, world, &report);
-  return {sketch, report, proposed, view_names(world),
-          posed.refined ? at_full_size(world.views, small, scene) : std::vector<View>(), tags};
+  const SolidSearch solid = close_solid(sketch, world, options, &report, progress);
+  return {sketch,
+          report,
+          proposed,
+          view_names(world),
+          posed.refined ? at_full_size(world.views, small, scene) : std::vector<View>(),
+          tags,
+          solid};
 }
 
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,

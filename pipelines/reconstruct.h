@@ -6,6 +6,7 @@
 #include "pipelines/options.h"
 #include "pipelines/run_report.h"
 #include "sketches/sketch.h"
+#include "topology/solid/find_solid.h"
 
 namespace sketchsplat {
 
@@ -15,8 +16,9 @@ struct Reconstruction {
   /// Edges that the sketch implies and no view shows, see propose.h; no part of it.
   Sketch proposed;
   std::vector<std::string> views;  ///< names of those that Evidence::views counts
-  std::vector<View> refined;  ///< the cameras, if they are not those of the scene; else empty
+  std::vector<View> refined;       ///< the cameras, if they are not those of the scene; else empty
   std::vector<TagSquare> tags;     ///< that were asked for
+  SolidSearch solid;               ///< what the strokes bound, or why there is none
 };
 
 /// The edges of the object in the scene, at least one. Throws TooLittleError if there is none,

@@ -164,6 +164,7 @@ std::string report_json(const ReportInput& input) {
   json["counts"] = counts_json(input);
   if (input.scale && !input.scale->source.empty())
     json["scale"] = Json::parse(scale_json(*input.scale));
+  if (input.solid) json["solid"] = Json::parse(solid_json(*input.solid));
   json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;
   json["strokes"] = Json::array();

@@ -7,6 +7,7 @@
 #include "pipelines/known_scale.h"
 #include "pipelines/page_photos.h"
 #include "pipelines/reconstruct.h"
+#include "pipelines/solid_output.h"
 
 namespace sketchsplat {
 
@@ -14,9 +15,10 @@ namespace sketchsplat {
 struct ReportInput {
   const Reconstruction* reconstruction;
   const Scene* scene;
-  std::string options_json;   ///< object of option -> value (fields_json)
-  bool reproducible = false;  ///< without seconds, memory and threads
-  const KnownScale* scale = nullptr;  ///< null: nobody knows
+  std::string options_json;             ///< object of option -> value (fields_json)
+  bool reproducible = false;            ///< without seconds, memory and threads
+  const KnownScale* scale = nullptr;    ///< null: nobody knows
+  const SolidOutcome* solid = nullptr;  ///< null: it is not told
 };
 
 /// report.json: seconds per stage, peak memory, counts, the scale if somebody knows it, rounds,

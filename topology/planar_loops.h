@@ -6,13 +6,9 @@
 
 #include "sketches/face.h"
 #include "sketches/sketch.h"
+#include "topology/find_planes.h"
 
 namespace sketchsplat {
-
-struct Plane {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d x, y, normal;  ///< right-handed orthonormal frame
-};
 
 /// Minimal cycles of strokes that lie in one plane, as faces: the graph of the strokes over their
 /// nodes is walked with the sharpest left turn at every node, after strokes that are part of no

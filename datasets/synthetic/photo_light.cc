@@ -72,11 +72,11 @@ Color color_of_part(const PhotoLook& look) {
   const std::uint64_t bits = hash(look.seed, 0, 0, 70);
   const float hue = float(uniform(bits)), value = float(uniform(mix(bits)));
   switch (look.surface) {
-    case Surface::kMetal:
+    case Finish::kMetal:
       return Color(0.62f, 0.615f, 0.6f) * (0.85f + 0.2f * value);
-    case Surface::kPrinted:
+    case Finish::kPrinted:
       return color_of(hue, 0.75f, 0.45f + 0.25f * value);
-    case Surface::kSpeckled:
+    case Finish::kSpeckled:
       return color_of(0.05f + 0.1f * hue, 0.2f, 0.5f + 0.2f * value);
     default:
       return color_of(hue, 0.3f, 0.35f + 0.35f * value);
@@ -116,7 +116,7 @@ Color PhotoShader::albedo(const Vector3f& point, int face) const {
 }
 
 bool PhotoShader::has_print(int face, const Vector3f& point) const {
-  if (is_part(face)) return look_.surface == Surface::kSpeckled;
+  if (is_part(face)) return look_.surface == Finish::kSpeckled;
   return world_.room.kind_at(point, face - world_.part_faces) != PatternKind::kPlaster;
 }
 
@@ -219,16 +219,16 @@ float PhotoShader::into_layers(float footprint, SurfacePoint* s) const {
 Color PhotoShader::of_part(SurfacePoint s, const Occlusion& occlusion, float footprint,
                            std::uint64_t bits) const {
   switch (look_.surface) {
-    case Surface::kMetal:
+    case Finish::kMetal:
       return 0.08f * paint_ * irradiance(s.point, s.normal, occlusion) +
              (paint_ + (1 - paint_) * (schlick(0, s.normal.dot(s.to_eye)))) *
                  mirrored_room(s, bits) * (0.35f + 0.65f * occlusion[2]);
-    case Surface::kPrinted: {
+    case Finish::kPrinted: {
       const float shade = into_layers(footprint, &s);
       return shade * paint_ * irradiance(s.point, s.normal, occlusion) +
              mirrored_lights(s, occlusion, 0.04f, 0.45f);
     }
-    case Surface::kSpeckled: {
+    case Finish::kSpeckled: {
       const float ink = 1.2f * speckles(stone_ * s.point, kSpeckleCell, look_.seed);
       return (1 - ink) * paint_ * irradiance(s.point, s.normal, occlusion) +
              mirrored_lights(s, occlusion, 0.03f, 0.6f);

@@ -25,7 +25,7 @@ struct PhotoWorld {
 
 /// How the part looks.
 struct PhotoLook {
-  Surface surface = Surface::kPainted;
+  Finish surface = Finish::kPainted;
   std::uint64_t seed = 0;  ///< of its colour
 };
 

@@ -4,7 +4,7 @@
 namespace sketchsplat {
 
 /// What the part of a photograph is made of.
-enum class Surface {
+enum class Finish {
   kPainted,   ///< one colour, a coat that mirrors the lamps a little
   kMetal,     ///< satin metal that mirrors the room
   kPrinted,   ///< plastic in layers, whose lines run around the part
@@ -16,7 +16,7 @@ enum class Up { kZ, kMinusZ, kY, kMinusY, kX, kMinusX };
 
 /// Photographs of a part on a table in a room, beside what RenderOptions says.
 struct PhotoOptions {
-  Surface surface = Surface::kPainted;
+  Finish surface = Finish::kPainted;
   Up up = Up::kZ;
   double distortion = 1;     ///< strength of the lens: 0 is a pinhole, 1 usual, [0, 3]
   bool state_lens = true;    ///< the model in sparse/0 has the lens; else it is a pinhole's

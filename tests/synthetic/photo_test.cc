@@ -24,10 +24,10 @@
 namespace sketchsplat {
 namespace {
 
-using test::small;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+using test::small;
 
 Image<float> grey_of(const Picture& p) {
   Image<float> grey(p.width(), p.height());
@@ -78,7 +78,7 @@ std::vector<double> offsets(const SyntheticScene& scene, const View& view, const
 }
 
 TEST(Photographs, TruthThroughTheLensLiesOnTheEdgesOfTheFiles) {
-  for (const Surface surface : {Surface::kPainted, Surface::kMetal, Surface::kPrinted}) {
+  for (const Finish surface : {Finish::kPainted, Finish::kMetal, Finish::kPrinted}) {
     const TempFolder folder;
     SynthesizeOptions options = small();
     options.photo.surface = surface;
@@ -142,7 +142,7 @@ TEST(Photographs, AreTheSameBytesForAnyNumberOfThreads) {
   SynthesizeOptions options = small();
   options.rig.resolution = 300;
   options.rig.views = 4;
-  options.photo.surface = Surface::kMetal;
+  options.photo.surface = Finish::kMetal;
   options.photo.tag = 3;
   options.photo.pose_error_px = 0.5;
   options.render.noise = 2;

@@ -17,6 +17,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Shell.hxx>
 #include <algorithm>
 #include <cmath>
@@ -60,7 +61,7 @@ std::string first_error(const BRepCheck_ListOfStatus& list) {
   return "";
 }
 
-std::string fault_of(const BRepCheck_Analyzer& analyzer, const TopoDS_Shape& shape) {
+std::string fault_in(const BRepCheck_Analyzer& analyzer, const TopoDS_Shape& shape) {
   const Handle(BRepCheck_Result)& result = analyzer.Result(shape);
   if (result.IsNull()) return "";
   std::string error = first_error(result->Status());
@@ -145,7 +146,7 @@ std::string fault_of(const TopoDS_Shape& shape) {
   for (const TopAbs_ShapeEnum kind :
        {TopAbs_VERTEX, TopAbs_EDGE, TopAbs_WIRE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID})
     for (TopExp_Explorer it(shape, kind); it.More(); it.Next()) {
-      const std::string fault = fault_of(analyzer, it.Current());
+      const std::string fault = fault_in(analyzer, it.Current());
       if (!fault.empty()) return fault;
     }
   return "no valid shape";

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <random>
+
+#include "gmock/gmock.h"
+#include "sketches/curve.h"
+#include "tests/topology/solids.h"
+#include "topology/brep/solid_step.h"
+#include "topology/find_planes.h"
+#include "topology/solid/find_solid.h"
+#include "topology/solid/surface.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Volume of the solid that the strokes bound; 0, with a failure, if there is none that is valid.
+double volume_of(const Sketch& sketch) {
+  const SolidSearch search = find_solid(sketch);
+  EXPECT_TRUE(search.solid) << search.why;
+  if (!search.solid) return 0;
+  const SolidCheck check = write_solid_step(*search.solid, "");
+  EXPECT_TRUE(check.valid) << check.why;
+  return check.volume;
+}
+
+int inferred_in(const Sketch& sketch) {
+  const SolidSearch search = find_solid(sketch);
+  EXPECT_TRUE(search.solid) << search.why;
+  if (!search.solid) return -1;
+  return int(std::count(search.solid->inferred.begin(), search.solid->inferred.end(), true));
+}
+
+Sketch box_edges() { return box_solid({0, 0, 0}, {3, 2, 1}).edges; }
+
+Sketch without(const Sketch& sketch, const std::vector<int>& strokes) {
+  std::vector<bool> keep(sketch.size(), true);
+  for (const int s : strokes) keep[s] = false;
+  return keep_strokes(sketch, keep);
+}
+
+// A plate of thickness 1 whose outline is a square of side 2 with a half disc of radius 1 on one
+// side; nothing shows where the flat sides run into the round.
+Sketch tongue_edges() {
+  SolidMaker m;
+  for (const double z : {0.0, 1.0}) {
+    const int a = m.node({0, -1, z}), b = m.node({2, -1, z}), c = m.node({2, 1, z}),
+              d = m.node({0, 1, z});
+    m.line(a, b);
+    m.arc(b, c, {3, 0, z});
+    m.line(c, d);
+    m.line(d, a);
+  }
+  m.line(0, 4);
+  m.line(3, 7);
+  return m.solid.edges;
+}
+
+TEST(FindSolid, TheEdgesOfABoxBoundTheBox) {
+  const SolidSearch search = find_solid(box_edges());
+  ASSERT_TRUE(search.solid) << search.why;
+  EXPECT_EQ(search.solid->faces.size(), 6u);
+  EXPECT_THAT(search.doubtful, IsEmpty());
+  EXPECT_NEAR(volume_of(box_edges()), 6, 1e-9);
+}
+
+TEST(FindSolid, HolesAndPocketsAreTold) {
+  const double disc = M_PI * 0.25 * 0.25;
+  EXPECT_NEAR(volume_of(plate_with_hole(0.5).edges), 1 - 0.5 * disc, 1e-6);
+  EXPECT_NEAR(volume_of(plate_with_hole(0.2).edges), 1 - 0.2 * disc, 1e-6);
+}
+
+// Two circles alone may be the rims of other things, too; masks tell in practice.
+TEST(FindSolid, ConesAreToldIfTheLeastDescriptionIsEnough) {
+  SolidOptions options;
+  EXPECT_THAT(find_solid(cone_solid(0.5).edges, options).why, HasSubstr("another choice"));
+  options.margin = 1;
+  const SolidSearch search = find_solid(cone_solid(0.5).edges, options);
+  ASSERT_TRUE(search.solid) << search.why;
+  EXPECT_NEAR(write_solid_step(*search.solid, "").volume, M_PI / 3 * (1 + 0.5 + 0.25), 1e-6);
+}
+
+TEST(FindSolid, LinesThatNoImageCanShowAreInferred) {
+  EXPECT_EQ(inferred_in(tongue_edges()), 2);
+  EXPECT_NEAR(volume_of(tongue_edges()), 4 + M_PI / 2, 1e-6);
+}
+
+TEST(FindSolid, AnEdgeThatIsMissingIsInferred) {
+  for (int s = 0; s < 12; ++s) {
+    EXPECT_EQ(inferred_in(without(box_edges(), {s})), 1);
+    EXPECT_NEAR(volume_of(without(box_edges(), {s})), 6, 1e-9);
+  }
+}
+
+TEST(FindSolid, ALineOnAFaceIsDoubtfulAndRefused) {
+  Sketch sketch = box_edges();
+  const int a = sketch.add_node({1, 0.5, 1}), b = sketch.add_node({2, 1.5, 1});
+  sketch.add_stroke(StrokeKind::kLine, a, b, {});
+  const SolidSearch search = find_solid(sketch);
+  EXPECT_FALSE(search.solid);
+  EXPECT_THAT(search.doubtful, ElementsAre(12));
+  EXPECT_THAT(search.why, HasSubstr("1 of 13 curves"));
+}
+
+TEST(FindSolid, AnOpenFrameIsRefused) {
+  // Of three edges of a side, and of none of its neighbours, nothing is known.
+  EXPECT_FALSE(find_solid(without(box_edges(), {0, 1, 2, 3, 4})).solid);
+  EXPECT_FALSE(find_solid(Sketch()).solid);
+}
+
+TEST(FindSolid, NoiseLeavesNoGaps) {
+  Sketch sketch = plate_with_hole(0.5).edges;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 2e-4);
+  for (int i = 0; i < sketch.nodes.cols(); ++i)
+    for (int k = 0; k < 3; ++k) sketch.nodes(k, i) += noise(random);
+  for (int i = 0; i < sketch.handles.cols(); ++i)
+    for (int k = 0; k < 3; ++k) sketch.handles(k, i) += noise(random);
+  const SolidSearch search = find_solid(sketch);
+  ASSERT_TRUE(search.solid) << search.why;
+  EXPECT_LT(search.solid->gap, 1e-6);
+  for (int i = 0; i < sketch.nodes.cols(); ++i)
+    EXPECT_LT(
+        (search.solid->edges.nodes.colwise() - sketch.nodes.col(i)).colwise().norm().minCoeff(),
+        2e-3);
+  EXPECT_NEAR(volume_of(sketch), 1 - 0.5 * M_PI * 0.0625, 2e-3);
+}
+
+TEST(FindSolid, OrderRotationAndScaleDoNotMatter) {
+  const Sketch sketch = tongue_edges();
+  Sketch other;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  other.nodes = (0.01 * turn * sketch.nodes).colwise() + Vector3d(5, -3, 1);
+  for (int s = sketch.size() - 1; s >= 0; --s) {
+    const Stroke& stroke = sketch.strokes[s];
+    std::vector<Vector3d> handles;
+    for (int h = 0; h < num_handles(stroke.kind); ++h)
+      handles.push_back(0.01 * turn * sketch.handles.col(stroke.handle + h) + Vector3d(5, -3, 1));
+    other.add_stroke(stroke.kind, stroke.begin, stroke.end, handles);
+  }
+  EXPECT_NEAR(volume_of(other), 1e-6 * (4 + M_PI / 2), 1e-10);
+}
+
+TEST(FindSolid, EveryEdgeIsRunOnceInEitherDirection) {
+  const SolidSearch search = find_solid(plate_with_hole(0.2).edges);
+  ASSERT_TRUE(search.solid) << search.why;
+  std::vector<int> forward(search.solid->edges.size()), back = forward;
+  for (const SolidFace& face : search.solid->faces)
+    for (const Loop& loop : face.loops)
+      for (const LoopStroke& s : loop) ++(s.forward ? forward : back)[s.stroke];
+  EXPECT_THAT(forward, ::testing::Each(1));
+  EXPECT_THAT(back, ::testing::Each(1));
+}
+
+TEST(FindSolid, MasksThatContradictRefuse) {
+  SolidEvidence evidence;
+  for (int i = 0; i < 100; ++i)  // straight down through the box, and nothing is there
+    evidence.rays.push_back({{0.02 * i + 0.3, 1, 9}, {0.02 * i + 0.3, 1, -9}, false});
+  const SolidSearch search = find_solid(box_edges(), {}, evidence);
+  EXPECT_FALSE(search.solid);
+}
+
+TEST(Evidence, AFaceThatPlacesAreSeenThroughHasAPrice) {
+  const Sketch sketch = box_edges();
+  const std::vector<Eigen::Matrix3Xd> polylines = polylines_of(sketch);
+  const std::vector<SurfaceStrokes> surfaces = find_surfaces(sketch, polylines, 1e-3);
+  std::vector<Cell> cells;
+  for (size_t i = 0; i < surfaces.size(); ++i)
+    for (const Cell& cell : cells_of(sketch, polylines, surfaces[i], int(i))) cells.push_back(cell);
+  ASSERT_EQ(cells.size(), 6u);
+  // From above, through the top alone, to a place in the middle.
+  for (const bool seen : {true, false}) {
+    SolidEvidence evidence;
+    for (int i = 0; i < 20; ++i) evidence.sights.push_back({{1.5, 1, 9}, {1.5, 1, 0.5}, seen, 1});
+    const EvidenceOfCells weighed = weigh_cells(evidence, surfaces, cells, 3, {});
+    EXPECT_EQ(std::count_if(weighed.against.begin(), weighed.against.end(),
+                            [](double nats) { return nats > 5; }),
+              seen ? 1 : 0);
+  }
+}
+
+TEST(Surface, CrossingsLieOnTheSurfaceAndNoneIsMissed) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-2, 2);
+  const Vector3d axis = Vector3d(1, 2, 2) / 3;
+  for (const Surface& s : {Surface{SurfaceKind::kPlane, {0.1, 0, 0}, axis},
+                           Surface{SurfaceKind::kCylinder, {0.1, 0, 0}, axis, 0.8},
+                           Surface{SurfaceKind::kCone, {0.1, 0, 0}, axis, 3, 0.4}})
+    for (int trial = 0; trial < 200; ++trial) {
+      const Vector3d from(place(random), place(random), place(random)),
+          to(place(random), place(random), place(random));
+      const Crossings at = crossings(s, from, to);
+      for (int k = 0; k < at.count; ++k)
+        EXPECT_NEAR(surface_distance(s, from + at.t[k] * (to - from)), 0, 1e-9);
+      const bool apart = surface_distance(s, from) * surface_distance(s, to) < 0;
+      EXPECT_EQ(at.count % 2 == 1, apart);
+    }
+}
+
+TEST(Surface, ALayoutFoldsBack) {
+  const Vector3d axis = Vector3d(1, 2, 2) / 3;
+  for (const Surface& s : {Surface{SurfaceKind::kPlane, {0.1, 0, 0}, axis},
+                           Surface{SurfaceKind::kCylinder, {0.1, 0, 0}, axis, 0.8},
+                           Surface{SurfaceKind::kCone, {0.1, 0, 0}, axis, 0.8, 0.4}}) {
+    const Layout layout(s);
+    for (const double u : {-1.0, 0.2, 1.5}) {
+      const Eigen::Vector2d flat(u, 0.3);
+      EXPECT_NEAR((layout.flat(layout.point(flat)) - flat).norm(), 0, 1e-12);
+      EXPECT_NEAR(surface_distance(s, layout.point(flat)), 0, 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sketchsplat

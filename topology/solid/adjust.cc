@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "topology/solid/adjust.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "sketches/curve.h"
+#include "topology/solid/surface.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+// A surface as unknowns: origin, axis (any length), radius, slope, minor radius.
+using Unknowns = std::array<double, 9>;
+
+Unknowns unknowns_of(const Surface& s) {
+  return {s.origin.x(), s.origin.y(), s.origin.z(), s.axis.x(),    s.axis.y(),
+          s.axis.z(),   s.radius,     s.slope,      s.minor_radius};
+}
+
+void copy_back(const Unknowns& u, Surface* s) {
+  s->origin = Vector3d(u[0], u[1], u[2]);
+  s->axis = Vector3d(u[3], u[4], u[5]).normalized();
+  s->radius = u[6];
+  s->slope = u[7];
+  s->minor_radius = u[8];
+}
+
+// How much more it counts that a curve lies on its surface than that it stays where it is: what is
+// measured gives way by about the square of this over one.
+constexpr double kHard = 1e4;
+
+// surface_distance() with derivatives.
+template <typename T>
+T signed_distance(SurfaceKind kind, const Vec3<T>& origin, const Vec3<T>& axis, const T& radius,
+                  const T& slope, const T& minor_radius, const Vec3<T>& point) {
+  using std::sqrt;
+  const Vec3<T> from = point - origin;
+  const T along = from.dot(axis);
+  if (kind == SurfaceKind::kPlane) return along;
+  if (kind == SurfaceKind::kSphere) return sqrt(from.squaredNorm() + T(1e-300)) - radius;
+  const T out = sqrt((from - axis * along).squaredNorm() + T(1e-300));
+  if (kind == SurfaceKind::kCylinder) return out - radius;
+  if (kind == SurfaceKind::kCone)
+    return (out - radius - slope * along) / sqrt(T(1) + slope * slope);
+  const T ring = out - radius;
+  return sqrt(ring * ring + along * along + T(1e-300)) - minor_radius;
+}
+
+// Distances of places along a curve from a surface.
+struct OnSurface {
+  StrokeKind kind;
+  SurfaceKind surface;
+  std::vector<double> t;
+
+  template <typename T>
+  bool operator()(T const* const* blocks, T* residuals) const {
+    const T* u = blocks[0];
+    const Vec3<T> origin(u[0], u[1], u[2]), axis = Vec3<T>(u[3], u[4], u[5]).normalized();
+    Vec3<T> control[4], position, derivative;
+    for (int k = 0; k < num_controls(kind); ++k)
+      control[k] = Vec3<T>(blocks[k + 1][0], blocks[k + 1][1], blocks[k + 1][2]);
+    for (size_t i = 0; i < t.size(); ++i) {
+      evaluate_curve<T>(kind, control, t[i], &position, &derivative);
+      residuals[i] =
+          T(kHard) * signed_distance<T>(surface, origin, axis, u[6], u[7], u[8], position);
+    }
+    return true;
+  }
+};
+
+// An unknown stays where it is.
+struct Stay {
+  std::vector<double> value;
+  double weight;
+  template <typename T>
+  bool operator()(T const* const* blocks, T* residuals) const {
+    for (size_t i = 0; i < value.size(); ++i) residuals[i] = (blocks[0][i] - value[i]) * T(weight);
+    return true;
+  }
+};
+
+// Axes are parallel (three residuals), or square to one another (one).
+struct Aligned {
+  bool square;
+  double weight;
+  template <typename T>
+  bool operator()(T const* const* blocks, T* residuals) const {
+    const Vec3<T> a = Vec3<T>(blocks[0][3], blocks[0][4], blocks[0][5]).normalized(),
+                  b = Vec3<T>(blocks[1][3], blocks[1][4], blocks[1][5]).normalized();
+    if (square) {
+      residuals[0] = a.dot(b) * T(weight);
+      return true;
+    }
+    const Vec3<T> cross = a.cross(b);
+    for (int i = 0; i < 3; ++i) residuals[i] = cross[i] * T(weight);
+    return true;
+  }
+};
+
+std::vector<double*> controls_of(Sketch* sketch, int stroke) {
+  const Stroke& s = sketch->strokes[stroke];
+  std::vector<double*> out;
+  if (!is_closed(s.kind)) out.push_back(sketch->nodes.col(s.begin).data());
+  for (int k = 0; k < num_handles(s.kind); ++k)
+    out.push_back(sketch->handles.col(s.handle + k).data());
+  if (!is_closed(s.kind)) out.push_back(sketch->nodes.col(s.end).data());
+  return out;
+}
+
+class Adjustment {
+ public:
+  explicit Adjustment(Solid* solid) : solid_(solid), extent_(largest_extent(solid->edges)) {
+    for (const Surface& s : solid->surfaces) unknowns_.push_back(unknowns_of(s));
+    for (const SolidFace& face : solid->faces)
+      for (const Loop& loop : face.loops)
+        for (const LoopStroke& s : loop) bounds_.insert({s.stroke, face.surface});
+  }
+
+  void run() {
+    for (const auto& [stroke, surface] : bounds_) tie(stroke, surface);
+    for (Unknowns& u : unknowns_) stay(u.data(), 9, 1e-2);
+    for (int i = 0; i < solid_->edges.nodes.cols(); ++i)
+      stay(solid_->edges.nodes.col(i).data(), 3, 1);
+    for (int i = 0; i < solid_->edges.handles.cols(); ++i)
+      stay(solid_->edges.handles.col(i).data(), 3, 1);
+    align();
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options.logging_type = ceres::SILENT;
+    options.max_num_iterations = 50;
+    options.function_tolerance = 1e-12;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem_, &summary);
+    for (size_t i = 0; i < unknowns_.size(); ++i) copy_back(unknowns_[i], &solid_->surfaces[i]);
+  }
+
+  double gap() const {
+    double gap = 0;
+    Vector3d p, d;
+    for (const auto& [stroke, surface] : bounds_)
+      for (int i = 0; i <= 32; ++i) {
+        evaluate_stroke(solid_->edges, stroke, i / 32.0, &p, &d);
+        gap = std::max(gap, std::abs(surface_distance(solid_->surfaces[surface], p)));
+      }
+    return gap;
+  }
+
+ private:
+  void tie(int stroke, int surface) {
+    const StrokeKind kind = solid_->edges.strokes[stroke].kind;
+    const int places = kind == StrokeKind::kLine ? 3 : 9;
+    std::vector<double> t;
+    for (int i = 0; i < places; ++i) t.push_back(i / (places - 1.0));
+    auto* cost = new ceres::DynamicAutoDiffCostFunction<OnSurface, 9>(
+        new OnSurface{kind, solid_->surfaces[surface].kind, t});
+    std::vector<double*> blocks = {unknowns_[surface].data()};
+    cost->AddParameterBlock(9);
+    for (double* control : controls_of(&solid_->edges, stroke)) {
+      blocks.push_back(control);
+      cost->AddParameterBlock(3);
+    }
+    cost->SetNumResiduals(places);
+    problem_.AddResidualBlock(cost, nullptr, blocks);
+  }
+
+  void stay(double* block, int size, double weight) {
+    auto* cost = new ceres::DynamicAutoDiffCostFunction<Stay, 9>(
+        new Stay{std::vector<double>(block, block + size), weight});
+    cost->AddParameterBlock(size);
+    cost->SetNumResiduals(size);
+    problem_.AddResidualBlock(cost, nullptr, block);
+  }
+
+  void align() {
+    const double within = std::sin(0.25 * M_PI / 180);
+    for (size_t i = 0; i < unknowns_.size(); ++i)
+      for (size_t k = i + 1; k < unknowns_.size(); ++k) {
+        const Vector3d &a = solid_->surfaces[i].axis, &b = solid_->surfaces[k].axis;
+        const bool parallel = a.cross(b).norm() < within, square = std::abs(a.dot(b)) < within;
+        if (!parallel && !square) continue;
+        auto* cost = new ceres::DynamicAutoDiffCostFunction<Aligned, 9>(
+            new Aligned{square, kHard * extent_});
+        cost->AddParameterBlock(9);
+        cost->AddParameterBlock(9);
+        cost->SetNumResiduals(square ? 1 : 3);
+        problem_.AddResidualBlock(cost, nullptr, unknowns_[i].data(), unknowns_[k].data());
+      }
+  }
+
+  Solid* solid_;
+  double extent_;
+  std::vector<Unknowns> unknowns_;
+  std::set<std::pair<int, int>> bounds_;  // stroke, surface
+  ceres::Problem problem_;
+};
+
+}  // namespace
+
+void adjust(Solid* solid) {
+  Adjustment adjustment(solid);
+  adjustment.run();
+  solid->gap = adjustment.gap();
+}
+
+}  // namespace sketchsplat

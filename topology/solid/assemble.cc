@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "topology/solid/assemble.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+using HalfEdge = std::pair<int, bool>;  // stroke, forward
+
+// A face with what it takes to ask for points on it.
+struct Patch {
+  Surface surface;
+  Layout layout;
+  Cell cell;
+  bool turned = false;  ///< the solid is on the side of the surface's normal
+};
+
+std::set<HalfEdge> half_edges(const Cell& cell) {
+  std::set<HalfEdge> out;
+  for (const Loop& loop : cell.loops)
+    for (const LoopStroke& s : loop) out.insert({s.stroke, s.forward});
+  return out;
+}
+
+// Chosen cells of one surface without the strokes between two of them.
+std::vector<Cell> merged(const Sketch& sketch, const std::vector<Matrix3Xd>& polylines,
+                         const SurfaceStrokes& surface, int index,
+                         const std::vector<const Cell*>& chosen) {
+  std::set<HalfEdge> all;
+  for (const Cell* cell : chosen) all.merge(half_edges(*cell));
+  SurfaceStrokes border{surface.surface, {}};
+  for (const int s : surface.strokes)
+    if (all.count({s, true}) != all.count({s, false})) border.strokes.push_back(s);
+  std::vector<Cell> out;
+  for (const Cell& cell : cells_of(sketch, polylines, border, index)) {
+    const std::set<HalfEdge> own = half_edges(cell);
+    if (std::includes(all.begin(), all.end(), own.begin(), own.end())) out.push_back(cell);
+  }
+  return out;
+}
+
+// Turns patches so that neighbours run their common stroke in opposite directions; false if that
+// cannot be. Each connected part keeps the sense of its first patch.
+bool turn_alike(std::vector<Patch>* patches, std::vector<int>* part) {
+  std::map<int, std::vector<std::pair<int, bool>>> uses;  // of a stroke: patch, forward
+  for (int p = 0; p < int(patches->size()); ++p)
+    for (const HalfEdge& h : half_edges((*patches)[p].cell))
+      uses[h.first].emplace_back(p, h.second);
+  std::vector<std::vector<std::pair<int, bool>>> beside(patches->size());
+  for (const auto& [stroke, of] : uses) {
+    if (of.size() != 2) return false;
+    const bool same = of[0].second == of[1].second;
+    beside[of[0].first].emplace_back(of[1].first, same);
+    beside[of[1].first].emplace_back(of[0].first, same);
+  }
+  part->assign(patches->size(), -1);
+  for (int first = 0; first < int(patches->size()); ++first) {
+    if ((*part)[first] >= 0) continue;
+    std::vector<int> set = {first};
+    (*part)[first] = first;
+    for (size_t k = 0; k < set.size(); ++k)
+      for (const auto& [other, same] : beside[set[k]]) {
+        const bool turned = (*patches)[set[k]].turned != same;
+        if ((*part)[other] >= 0) {
+          if ((*patches)[other].turned != turned) return false;
+          continue;
+        }
+        (*part)[other] = first;
+        (*patches)[other].turned = turned;
+        set.push_back(other);
+      }
+  }
+  return true;
+}
+
+// Patches that a ray from a point meets.
+int hits(const std::vector<Patch>& patches, const Vector3d& from, const Vector3d& to) {
+  int count = 0;
+  for (const Patch& p : patches) {
+    const Crossings c = crossings(p.surface, from, to);
+    for (int i = 0; i < c.count; ++i)
+      count += holds(p.cell, p.layout, p.layout.flat(Vector3d(from + c.t[i] * (to - from))));
+  }
+  return count;
+}
+
+// Outside is where an odd number of patches lies behind, the own one counted. Several places vote:
+// a ray may graze an edge.
+void turn_outwards(const std::vector<int>& part, double extent, std::vector<Patch>* patches) {
+  std::map<int, int> votes;
+  for (size_t p = 0; p < patches->size(); ++p) {
+    const Patch& patch = (*patches)[p];
+    for (const Vector3d& point : points_within(patch.cell, patch.layout, 5)) {
+      const Vector3d normal = surface_normal(patch.surface, point);
+      const Vector3d aside = normal + 0.1 * Vector3d(0.3, 0.5, 0.8);
+      const int ahead = hits(*patches, point + 1e-6 * extent * normal, point + 4 * extent * aside);
+      votes[part[p]] += (ahead % 2 == 0) == patch.turned ? -1 : 1;
+    }
+  }
+  for (size_t p = 0; p < patches->size(); ++p)
+    if (votes[part[p]] < 0) (*patches)[p].turned = !(*patches)[p].turned;
+}
+
+Loop reversed(const Loop& loop) {
+  Loop out(loop.rbegin(), loop.rend());
+  for (LoopStroke& s : out) s.forward = !s.forward;
+  return out;
+}
+
+}  // namespace
+
+bool assemble(const Sketch& sketch, const std::vector<bool>& inferred,
+              const std::vector<Matrix3Xd>& polylines, const std::vector<SurfaceStrokes>& surfaces,
+              const std::vector<Cell>& cells, const ChosenCells& chosen, Solid* solid,
+              std::string* why) {
+  std::vector<Patch> patches;
+  for (int i = 0; i < int(surfaces.size()); ++i) {
+    std::vector<const Cell*> own;
+    for (size_t c = 0; c < cells.size(); ++c)
+      if (cells[c].surface == i && chosen.cell[c]) own.push_back(&cells[c]);
+    if (own.empty()) continue;
+    for (const Cell& cell : merged(sketch, polylines, surfaces[i], i, own))
+      patches.push_back({surfaces[i].surface, Layout(surfaces[i].surface), cell});
+  }
+  std::vector<int> part;
+  if (patches.empty() || !turn_alike(&patches, &part)) {
+    *why = patches.empty() ? "no faces close" : "faces cannot be told inside from outside";
+    return false;
+  }
+  turn_outwards(part, largest_extent(sketch), &patches);
+
+  std::vector<bool> keep(sketch.size());
+  for (const Patch& p : patches)
+    for (const HalfEdge& h : half_edges(p.cell)) keep[h.first] = true;
+  std::vector<int> index(sketch.size(), -1);
+  *solid = Solid();
+  for (int s = 0; s < sketch.size(); ++s)
+    if (keep[s]) {
+      index[s] = int(solid->inferred.size());
+      solid->inferred.push_back(inferred[s]);
+    }
+  solid->edges = keep_strokes(sketch, keep);
+  std::map<int, int> surface_index;
+  for (const Patch& p : patches) {
+    const auto [it, first] = surface_index.emplace(p.cell.surface, int(solid->surfaces.size()));
+    if (first) solid->surfaces.push_back(p.surface);
+    SolidFace face{it->second, p.turned, {}};
+    for (const Loop& loop : p.cell.loops) {
+      face.loops.push_back(p.turned ? reversed(loop) : loop);
+      for (LoopStroke& s : face.loops.back()) s.stroke = index[s.stroke];
+    }
+    solid->faces.push_back(face);
+  }
+  return true;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "sketches/face.h"
+#include "sketches/sketch.h"
+#include "topology/solid/find_surfaces.h"
+#include "topology/solid/surface.h"
+
+namespace sketchsplat {
+
+/// A piece of a surface between strokes, none of which crosses it: faces are made of cells.
+/// Loops run with the cell on their left, seen against the surface's normal.
+struct Cell {
+  int surface = -1;
+  std::vector<Loop> loops;
+  /// Of the loops, in the surface's layout; one more at the apex of a cone that it ends in.
+  std::vector<Eigen::Matrix2Xd> polygons;
+};
+
+/// All bounded cells between the strokes of a surface. Strokes that bound none, and those on both
+/// of whose sides the same cell lies, are passed over. Of a cone the piece up to its apex counts as
+/// bounded. `index` is copied to Cell::surface.
+std::vector<Cell> cells_of(const Sketch& sketch, const std::vector<Eigen::Matrix3Xd>& polylines,
+                           const SurfaceStrokes& surface, int index);
+
+/// Around a cell in its layout; the first coordinate says nothing where the surface closes.
+struct FlatBox {
+  Eigen::Vector2d low, size;
+  Eigen::Vector2d at(double u, double v) const {
+    return low + Eigen::Vector2d(u * size.x(), v * size.y());
+  }
+  bool holds(const Eigen::Vector2d& p, bool closed) const {
+    const Eigen::Vector2d in = p - low;
+    return in.y() >= 0 && in.y() <= size.y() && (closed || (in.x() >= 0 && in.x() <= size.x()));
+  }
+};
+FlatBox box_of(const Cell& cell);
+
+/// Is a point of the layout in the cell? The first coordinate may be off by periods.
+bool holds(const Cell& cell, const Layout& layout, const Eigen::Vector2d& flat);
+
+/// About `count` points spread evenly over a cell, on the surface and off its border; at least one
+/// unless it is too thin.
+std::vector<Eigen::Vector3d> points_within(const Cell& cell, const Layout& layout, int count);
+
+/// Pairs of neighbouring points of a grid of `lines` x `lines` over a cell: pieces of its surface,
+/// but for the bend between the two.
+std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> grid_within(const Cell& cell,
+                                                                     const Layout& layout,
+                                                                     int lines);
+
+}  // namespace sketchsplat

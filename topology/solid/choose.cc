@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "topology/solid/choose.h"
+
+#include <coin/Cbc_C_Interface.h>
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+namespace sketchsplat {
+namespace {
+
+// Columns are yes or no; rows are sums of some of them.
+class Programme {
+ public:
+  Programme() : model_(Cbc_newModel(), Cbc_deleteModel) {
+    Cbc_setParameter(model_.get(), "logLevel", "0");
+    Cbc_setParameter(model_.get(), "ratioGap", "0");
+    Cbc_setParameter(model_.get(), "allowableGap", "0");
+  }
+  int add_column(double price) {
+    Cbc_addCol(model_.get(), "", 0, 1, price, 1, 0, nullptr, nullptr);
+    return columns_++;
+  }
+  void add_row(const std::map<int, double>& sum, char sense, double bound) {
+    std::vector<int> columns;
+    std::vector<double> factors;
+    for (const auto& [column, factor] : sum) {
+      columns.push_back(column);
+      factors.push_back(factor);
+    }
+    Cbc_addRow(model_.get(), "", int(columns.size()), columns.data(), factors.data(), sense, bound);
+  }
+  // Values of the columns at the least price.
+  std::vector<bool> solve(double seconds) {
+    Cbc_setParameter(model_.get(), "seconds", std::to_string(seconds).c_str());
+    Cbc_solve(model_.get());
+    if (!Cbc_isProvenOptimal(model_.get()))
+      throw std::runtime_error("no choice of faces is proven to be the best");
+    const double* values = Cbc_getColSolution(model_.get());
+    std::vector<bool> out(columns_);
+    for (int i = 0; i < columns_; ++i) out[i] = values[i] > 0.5;
+    return out;
+  }
+
+ private:
+  std::unique_ptr<Cbc_Model, void (*)(Cbc_Model*)> model_;
+  int columns_ = 0;
+};
+
+// Cells beside every stroke of every surface: to its left (of its direction) and to its right.
+using Sides = std::map<std::pair<int, int>, std::pair<int, int>>;
+
+Sides sides_of(const std::vector<Cell>& cells) {
+  Sides sides;
+  for (int c = 0; c < int(cells.size()); ++c)
+    for (const Loop& loop : cells[c].loops)
+      for (const LoopStroke& s : loop) {
+        auto& side =
+            sides.emplace(std::pair(s.stroke, cells[c].surface), std::pair(-1, -1)).first->second;
+        (s.forward ? side.first : side.second) = c;
+      }
+  return sides;
+}
+
+// A column that says whether one of two cells is chosen and the other is not.
+int border(int left, int right, Programme* programme) {
+  if (left < 0 || right < 0) return left < 0 ? right : left;
+  const int b = programme->add_column(0);
+  programme->add_row({{b, 1}, {left, -1}, {right, 1}}, 'G', 0);
+  programme->add_row({{b, 1}, {left, 1}, {right, -1}}, 'G', 0);
+  programme->add_row({{b, 1}, {left, -1}, {right, -1}}, 'L', 0);
+  programme->add_row({{b, 1}, {left, 1}, {right, 1}}, 'L', 2);
+  return b;
+}
+
+// A cell at least is chosen, or the price is paid. (A closed boundary is met twice; but along an
+// edge cells that are not adjusted yet gape.)
+void cover(const Cover& cover, Programme* programme) {
+  std::map<int, double> sum;
+  for (const int c : cover.cells) sum[c] = 1;
+  sum[programme->add_column(cover.price)] = 1;
+  programme->add_row(sum, 'G', 1);
+}
+
+void exclude(const ChosenCells& other, Programme* programme) {
+  std::map<int, double> sum;
+  int chosen = 0;
+  for (int c = 0; c < int(other.cell.size()); ++c) {
+    sum[c] = other.cell[c] ? -1 : 1;
+    chosen += other.cell[c];
+  }
+  programme->add_row(sum, 'G', 1 - chosen);
+}
+
+}  // namespace
+
+ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells>& others,
+                         double seconds) {
+  const int cells = int(choice.cells.size()), strokes = int(choice.used_price.size());
+  if (cells == 0) {  // nothing to choose, which the solver does not like
+    ChosenCells none;
+    none.stroke.assign(strokes, false);
+    for (const double price : choice.unused_price) none.price += price;
+    return none;
+  }
+  Programme programme;
+  for (const double price : choice.cell_price) programme.add_column(price);
+  for (int s = 0; s < strokes; ++s)
+    programme.add_column(choice.used_price[s] - choice.unused_price[s]);
+  std::vector<std::map<int, double>> faces(strokes);
+  for (const auto& [where, side] : sides_of(choice.cells))
+    faces[where.first][border(side.first, side.second, &programme)] += 1;
+  for (int s = 0; s < strokes; ++s) {
+    faces[s][cells + s] -= 2;
+    programme.add_row(faces[s], 'E', 0);
+  }
+  for (const auto& [a, b] : choice.exclusive) programme.add_row({{a, 1}, {b, 1}}, 'L', 1);
+  for (const Cover& c : choice.covers) cover(c, &programme);
+  for (const ChosenCells& other : others) exclude(other, &programme);
+
+  const std::vector<bool> values = programme.solve(seconds);
+  ChosenCells out;
+  out.cell.assign(values.begin(), values.begin() + cells);
+  out.stroke.assign(values.begin() + cells, values.begin() + cells + strokes);
+  for (int c = 0; c < cells; ++c) out.price += out.cell[c] ? choice.cell_price[c] : 0;
+  for (int s = 0; s < strokes; ++s)
+    out.price += out.stroke[s] ? choice.used_price[s] : choice.unused_price[s];
+  for (const Cover& c : choice.covers) {
+    int met = 0;
+    for (const int cell : c.cells) met += out.cell[cell];
+    out.price += met == 0 ? c.price : 0;
+  }
+  return out;
+}
+
+}  // namespace sketchsplat

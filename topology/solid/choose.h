@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "topology/solid/evidence.h"
+
+namespace sketchsplat {
+
+/// A set of cells of which one must be chosen, or it costs.
+struct Cover {
+  std::vector<int> cells;
+  double price = 0;  ///< [nat]
+};
+
+/// Which cells bound the solid, and what each choice costs [nat].
+struct CellChoice {
+  std::vector<Cell> cells;
+  std::vector<double> cell_price;              ///< per cell: of its being a part of the boundary
+  std::vector<double> used_price;              ///< per stroke: of its being an edge
+  std::vector<double> unused_price;            ///< per stroke: of its being none
+  std::vector<std::pair<int, int>> exclusive;  ///< pairs of cells, of which one may be chosen
+  std::vector<Cover> covers;
+};
+
+struct ChosenCells {
+  std::vector<bool> cell;    ///< is it a part of the boundary?
+  std::vector<bool> stroke;  ///< is it an edge, where two faces of different surfaces meet?
+  double price = 0;          ///< of all, nat
+};
+
+/// The cheapest choice in which every edge has two faces: an integer programme, solved exactly. A
+/// stroke between two chosen cells of one surface, or between none, is no edge. Cells that are all
+/// chosen in one of the `other` choices, and no more, are not chosen again. Without any cells
+/// that close: no cells, which is a choice, too. Throws std::runtime_error if `seconds` are over.
+ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells>& others,
+                         double seconds);
+
+}  // namespace sketchsplat

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "topology/solid/crossing_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kLines = 12;  // of a grid over a cell, in either direction
+
+struct Segment {
+  Vector3d from, to;
+};
+
+// Is a point in a cell, and off its border?
+bool holds_well(const Cell& cell, const Layout& layout, const Vector3d& point, double margin) {
+  const Eigen::Vector2d flat = layout.flat(point);
+  for (const auto& [u, v] : {std::pair(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+    if (!holds(cell, layout, flat + margin * Eigen::Vector2d(u, v))) return false;
+  return true;
+}
+
+struct Placed {
+  const Cell& cell;
+  const Surface& surface;
+  const Layout& layout;
+};
+
+// Does a segment of one cell run through the other?
+bool runs_through(const std::vector<Segment>& segments, const Placed& own, const Placed& other,
+                  double tolerance) {
+  for (const Segment& s : segments) {
+    const Crossings at = crossings(other.surface, s.from, s.to);
+    for (int k = 0; k < at.count; ++k) {
+      const Vector3d p = s.from + at.t[k] * (s.to - s.from);
+      if (holds_well(other.cell, other.layout, p, 2 * tolerance) &&
+          holds_well(own.cell, own.layout, p, 2 * tolerance))
+        return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::pair<int, int>> crossing_cells(const std::vector<SurfaceStrokes>& surfaces,
+                                                const std::vector<Cell>& cells, double tolerance) {
+  std::vector<Layout> layouts;
+  for (const SurfaceStrokes& s : surfaces) layouts.emplace_back(s.surface);
+  std::vector<std::vector<Segment>> segments;
+  for (const Cell& cell : cells) {
+    segments.emplace_back();
+    for (const auto& [from, to] : grid_within(cell, layouts[cell.surface], kLines))
+      segments.back().push_back({from, to});
+  }
+  const auto placed = [&](int c) {
+    const int s = cells[c].surface;
+    return Placed{cells[c], surfaces[s].surface, layouts[s]};
+  };
+  const auto through = [&](int a, int b) {
+    return runs_through(segments[a], placed(a), placed(b), tolerance);
+  };
+  std::vector<std::pair<int, int>> out;
+  for (int a = 0; a < int(cells.size()); ++a)
+    for (int b = a + 1; b < int(cells.size()); ++b)
+      if (cells[a].surface != cells[b].surface && (through(a, b) || through(b, a)))
+        out.emplace_back(a, b);
+  return out;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "topology/solid/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+class Scales {
+ public:
+  Scales(const std::vector<SurfaceStrokes>& surfaces, const std::vector<Cell>& cells)
+      : surfaces_(surfaces), cells_(cells), of_surface_(surfaces.size()) {
+    for (const SurfaceStrokes& s : surfaces) layouts_.emplace_back(s.surface);
+    for (int c = 0; c < int(cells.size()); ++c) {
+      of_surface_[cells[c].surface].push_back(c);
+      boxes_.push_back(box_of(cells[c]));
+    }
+  }
+
+  // Cells that a segment meets before `end` in [0, 1], ascending.
+  std::vector<int> met(const Vector3d& from, const Vector3d& to, double end) const {
+    std::vector<int> out;
+    for (size_t i = 0; i < surfaces_.size(); ++i) {
+      if (of_surface_[i].empty()) continue;
+      const Crossings at = crossings(surfaces_[i].surface, from, to);
+      for (int k = 0; k < at.count && at.t[k] < end; ++k) {
+        const Eigen::Vector2d flat = layouts_[i].flat(Vector3d(from + at.t[k] * (to - from)));
+        for (const int c : of_surface_[i])
+          if (boxes_[c].holds(flat, layouts_[i].period() > 0) &&
+              holds(cells_[c], layouts_[i], flat))
+            out.push_back(c);
+      }
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+ private:
+  const std::vector<SurfaceStrokes>& surfaces_;
+  const std::vector<Cell>& cells_;
+  std::vector<Layout> layouts_;
+  std::vector<std::vector<int>> of_surface_;
+  std::vector<FlatBox> boxes_;
+};
+
+// Places behind a cell.
+struct Seen {
+  double all = 0, seen = 0;
+  void add(const Sight& s) {
+    all += s.weight;
+    seen += s.seen ? s.weight : 0;
+  }
+  // Log-likelihood ratio of no face being there, where others may hide the places, to a face.
+  double against(const EvidencePrices& prices) const {
+    const double a = prices.seen_through, share = all > 0 ? seen / all : 0;
+    if (share <= a) return 0;
+    const double b = std::min(share, prices.seen);
+    return all * (share * std::log(b / a) + (1 - share) * std::log((1 - b) / (1 - a)));
+  }
+};
+
+}  // namespace
+
+EvidenceOfCells weigh_cells(const SolidEvidence& evidence,
+                            const std::vector<SurfaceStrokes>& surfaces,
+                            const std::vector<Cell>& cells, double extent,
+                            const EvidencePrices& prices) {
+  const Scales scales(surfaces, cells);
+  EvidenceOfCells out;
+  out.against.assign(cells.size(), 0);
+  std::vector<Seen> seen(cells.size());
+  for (const Sight& s : evidence.sights) {
+    const double end = 1 - prices.near * extent / (s.to - s.from).norm();
+    for (const int c : scales.met(s.from, s.to, end)) seen[c].add(s);
+  }
+  for (size_t c = 0; c < cells.size(); ++c) out.against[c] = seen[c].against(prices);
+  std::map<std::vector<int>, int> object, free;
+  for (const MaskRay& ray : evidence.rays)
+    ++(ray.object ? object : free)[scales.met(ray.from, ray.to, 1)];
+  for (const auto& [met, rays] : free)
+    for (const int c : met) out.against[c] += prices.ray * rays;
+  for (double& against : out.against) against = std::min(against, prices.most);
+  for (const auto& [met, rays] : object) out.object.push_back({met, rays});
+  for (const auto& [met, rays] : free) out.free.push_back({met, rays});
+  return out;
+}
+
+int contradicted(const EvidenceOfCells& weighed, const std::vector<bool>& chosen) {
+  const auto count = [&](const Meeting& m) {
+    return std::count_if(m.cells.begin(), m.cells.end(), [&](int c) { return chosen[c]; });
+  };
+  int rays = 0;
+  for (const Meeting& m : weighed.object) rays += count(m) == 0 ? m.rays : 0;
+  for (const Meeting& m : weighed.free) rays += count(m) > 0 ? m.rays : 0;
+  return rays;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sketches/solid.h"
+#include "topology/solid/evidence.h"
+
+namespace sketchsplat {
+
+struct SolidOptions {
+  double tolerance = 1.5e-3;  ///< of a stroke from the surface that it lies on; of the extent
+  double face_price = 3;      ///< [nat] of a face
+  double smooth_price = 1;    ///< [nat] of an inferred edge along which surfaces touch
+  double faint_price = 6;     ///< [nat] of one that images should have shown
+  double margin = 4;          ///< [nat] by which the second-best choice must be worse
+  /// Share of the rays through masks that may contradict the solid.
+  double contradicted = 2e-3;
+  double seconds = 10;  ///< for the choice
+  EvidencePrices evidence;
+};
+
+struct SolidSearch {
+  std::optional<Solid> solid;
+  std::string why;            ///< if there is none: a clause
+  std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending
+  double margin = 0;          ///< [nat] by which the second-best choice is worse
+  int surfaces = 0, cells = 0;
+  int rays = 0,
+      contradicted = 0;  ///< rays through pixels of masks; those that the choice is against
+};
+
+/// The solid whose faces explain the strokes, if one does and no other does about as well: surfaces
+/// through strokes, cells between strokes on them, and of these the choice of least price in which
+/// every edge has two faces.
+SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options = {},
+                       const SolidEvidence& evidence = {});
+
+}  // namespace sketchsplat

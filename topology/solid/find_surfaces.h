@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sketches/sketch.h"
+#include "sketches/solid.h"
+
+namespace sketchsplat {
+
+/// A surface that faces may lie on, and the strokes that do.
+struct SurfaceStrokes {
+  Surface surface;
+  std::vector<int> strokes;  ///< ascending
+};
+
+/// Surfaces that strokes ask for: planes of strokes that meet; cylinders and cones through an arc
+/// or circle, about its axis, and cylinders cut in an ellipse, that hold more than the strokes of
+/// one plane. Of surfaces that
+/// hold the same strokes there is one. `polylines` as polylines_of(sketch); `tolerance`: distance
+/// of a stroke from its surface, world units.
+std::vector<SurfaceStrokes> find_surfaces(const Sketch& sketch,
+                                          const std::vector<Eigen::Matrix3Xd>& polylines,
+                                          double tolerance);
+
+}  // namespace sketchsplat
