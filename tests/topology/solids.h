@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sketches/solid.h"
+#include "sketches/graph/solid.h"
 
 namespace sketchsplat {
 

@@ -28,8 +28,8 @@
 #include <XSControl_WorkSession.hxx>
 #include <filesystem>
 
-#include "datasets/errors.h"
-#include "sketches/step_file.h"
+#include "datasets/types/errors.h"
+#include "sketches/io/step_file.h"
 
 namespace sketchsplat::brep {
 namespace {
