@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "datasets/readers/scene.h"
 #include "datasets/types/errors.h"
@@ -11,6 +14,7 @@
 #include "pipelines/base/atomic_file.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/pages/overlay.h"
+#include "pipelines/results/brep_plugin.h"
 
 namespace fs = std::filesystem;
 
@@ -83,19 +87,58 @@ void write_files(const EvaluateArguments& arguments, const std::string& json,
   write_text(arguments.out + "/strokes.csv", strokes_to_csv(scenes));
 }
 
+// The solid of a result folder against the part of a scene, if both are there.
+std::optional<SolidComparison> compare_solids(const EvaluateArguments& arguments,
+                                              Progress* progress) {
+  const std::string solid = arguments.prediction + "/solid.step",
+                    part = arguments.truth + "/groundtruth/part.step";
+  std::error_code none;
+  if (!fs::exists(solid, none) || !fs::exists(part, none)) return std::nullopt;
+  try {
+    return brep_plugin().compare_solids(solid, part);
+  } catch (const std::runtime_error& e) {
+    progress->warn(e.what());
+    return std::nullopt;
+  }
+}
+
+std::string with_solid(const std::string& json, const SolidComparison& c) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::parse(json);
+  all["solid"] = {{"volume", c.volume},
+                  {"true_volume", c.true_volume},
+                  {"iou", c.iou},
+                  {"face_precision", c.face_precision},
+                  {"face_recall", c.face_recall},
+                  {"face_f", c.face_f},
+                  {"largest_distance", c.largest_distance}};
+  return all.dump(1) + "\n";
+}
+
+std::string solid_row(const SolidComparison& c) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "solid  IoU %.4f  faces P %.1f  R %.1f  F %.1f  largest distance %.2g\n", c.iou,
+                100 * c.face_precision, 100 * c.face_recall, 100 * c.face_f, c.largest_distance);
+  return text;
+}
+
 void evaluate_one(const EvaluateArguments& arguments, Progress* progress) {
   SceneEvaluation scene;
   scene.name = fs::path(arguments.truth).lexically_normal().stem().string();
   scene.evaluation = evaluate(read_prediction(arguments.prediction),
                               find_ground_truth(arguments.truth), arguments.options);
-  write_files(arguments, to_json(scene.evaluation), {scene});
+  const std::optional<SolidComparison> solid = compare_solids(arguments, progress);
+  const std::string json =
+      solid ? with_solid(to_json(scene.evaluation), *solid) : to_json(scene.evaluation);
+  write_files(arguments, json, {scene});
   if (arguments.overlays > 0) {
     write_worst(scene.evaluation, arguments.truth, arguments.out, arguments.overlays, progress);
   }
   if (on_stdout(arguments))
-    std::cout << to_json(scene.evaluation);
+    std::cout << json;
   else
-    std::cout << to_table(scene.evaluation) << worst_curves(scene.evaluation);
+    std::cout << to_table(scene.evaluation) << (solid ? solid_row(*solid) : "")
+              << worst_curves(scene.evaluation);
 }
 
 void evaluate_folder(const EvaluateArguments& arguments, Progress* progress) {

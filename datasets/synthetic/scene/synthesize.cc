@@ -69,7 +69,7 @@ struct Object {
 Object make_object(const SynthesizeOptions& options) {
   if (is_mesh_file(options.part)) {
     MeshPart part = make_mesh_part(read_mesh(options.part), options.crease_deg, options.part);
-    const CadModel cad{part.frame, {}, part.surface};
+    const CadModel cad{part.frame, {}, part.surface, {}};
     return {std::move(part.surface), std::move(part.truth), std::make_shared<CadModel>(cad)};
   }
   const Brep brep = is_step_file(options.part)
@@ -78,7 +78,7 @@ Object make_object(const SynthesizeOptions& options) {
   const UnitFrame frame = unit_frame(brep, options.part);
   constexpr double kCoarse = 1e-3;  // about as fine as the meshes of ABC
   const CadModel cad{frame, smooth_edges(brep, frame, options.smooth_angle_deg),
-                     tessellate(brep, frame, kCoarse, options.part)};
+                     tessellate(brep, frame, kCoarse, options.part), brep};
   return {tessellate(brep, frame, options.deflection, options.part),
           sharp_edges(brep, frame, options.smooth_angle_deg), std::make_shared<CadModel>(cad)};
 }

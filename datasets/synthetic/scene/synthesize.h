@@ -42,6 +42,7 @@ struct CadModel {
   UnitFrame frame;   ///< CAD units to the unit frame
   Truth smooth;      ///< seams and tangent transitions, unit frame; empty for a mesh
   SurfaceMesh mesh;  ///< coarser than what is rendered, unit frame
+  Brep brep;         ///< CAD units; empty for a mesh
 };
 
 /// A part, its true edges and its cameras. The object's box is centred at (0.5, 0.5, 0.5) extents.
@@ -85,6 +86,7 @@ Picture render(const SyntheticScene& scene, int view);  ///< its picture alone
 ///   groundtruth/gt.json: list of {"type", "closed", "points": [[x, y, z], ...],
 ///     "visible_views": [n, ...] one per point, "dihedral_deg"},
 ///   groundtruth/sketch.json: the same edges as a sketch graph;
+///   groundtruth/part.step: the part itself in world units (not of a mesh);
 ///   groundtruth/abc/: the same edges as ABC ships them, in CAD units: see write_abc.h;
 /// and of the outputs that were asked for, whatever happens to the image:
 ///   mask/<k>.png, depth/<k>.exr (channel Z, 32 bits), normal/<k>.exr (R, G, B = x, y, z, 16 bits),

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "datasets/synthetic/write/write_abc.h"
+#include "datasets/synthetic/write/write_part.h"
 #include "datasets/types/errors.h"
 #include "sketches/io/io.h"
 
@@ -74,6 +75,9 @@ void write_truth(const SyntheticScene& scene, const std::string& folder) {
   std::ostringstream sketch;
   write_sketch_json(sketch, scene.truth.sketch);
   write_text(folder + "/groundtruth/sketch.json", sketch.str());
+  if (scene.cad && scene.cad->brep.shape)
+    write_part(scene.cad->brep, scene.cad->frame, scene.options.extent,
+               folder + "/groundtruth/part.step");
   for (const auto& [name, text] : abc_files(scene))
     write_text(folder + "/groundtruth/abc/" + name, text);
 }
