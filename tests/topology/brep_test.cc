@@ -88,17 +88,14 @@ TEST(Brep, ArcsAndLinesBoundAPieceOfACylinder) {
 }
 
 TEST(Brep, AFrustumIsValid) {
-  expect_valid(cone_solid(0.5), M_PI / 3 * 1.75,
-               M_PI * 1.25 + M_PI * 1.5 * std::hypot(1, 0.5));
+  expect_valid(cone_solid(0.5), M_PI / 3 * 1.75, M_PI * 1.25 + M_PI * 1.5 * std::hypot(1, 0.5));
 }
 
 TEST(Brep, AConeEndsInItsApex) {
   expect_valid(cone_solid(0), M_PI / 3, M_PI + M_PI * std::sqrt(2.0));
 }
 
-TEST(Brep, AWholeSphereHasNoLoops) {
-  expect_valid(sphere_solid(), M_PI / 6, M_PI);
-}
+TEST(Brep, AWholeSphereHasNoLoops) { expect_valid(sphere_solid(), M_PI / 6, M_PI); }
 
 }  // namespace
 }  // namespace sketchsplat

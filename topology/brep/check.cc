@@ -130,7 +130,7 @@ std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
     text << "curves lie beside their faces by " << check.tolerance / extent << " of the extent";
     return text.str();
   }
-  const std::string fault = fault_of(built.shape);
+  const std::string fault = brep::fault_of(built.shape);
   if (!fault.empty()) return fault;
   for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More(); it.Next())
     if (!BRep_Tool::IsClosed(it.Current())) return "its faces do not close";

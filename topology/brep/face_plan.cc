@@ -195,7 +195,9 @@ FacePlan plan_face(const Solid& solid, const SolidFace& face, EdgeTable* edges) 
   }
   const Handle(Geom_Surface) surface =
       surface_of(solid.surfaces[face.surface], border_of(loops, *edges));
-  FacePlan plan{Chart(surface, edges->near()), loops, face.reversed};
+  FacePlan plan(Chart(surface, edges->near()));
+  plan.loops = loops;
+  plan.reversed = face.reversed;
   std::vector<TracedLoop> traced;
   int in_u = 0, in_v = 0;
   for (const Loop& loop : loops) {

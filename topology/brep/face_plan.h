@@ -17,6 +17,8 @@ struct SeamEnd {
 
 /// How a face closes in the chart of its surface.
 struct FacePlan {
+  explicit FacePlan(const Chart& c) : chart(c) {}
+
   Chart chart;
   std::vector<Loop> loops;  ///< what belongs to the face lies to the left, as the normal sees it
   bool reversed = false;    ///< out of the material is against the normal
