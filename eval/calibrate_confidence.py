@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fits the coefficients of pipelines/confidence.cc: which strokes are edges of the object.
+"""Fits the coefficients of pipelines/survey/confidence.cc: which strokes are edges of the object.
 
 Makes scenes of built-in parts under harmless and harmful conditions, reconstructs them, asks
 `evaluate` which strokes are right (90 % of their length within 5 thousandths of a true edge), and

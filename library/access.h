@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
 #include "sketchsplat/curves.h"
 
 namespace sketchsplat {

@@ -7,13 +7,13 @@
 #include <stdexcept>
 
 #include "library/access.h"
-#include "pipelines/atomic_file.h"
-#include "pipelines/sketch_input.h"
-#include "sketches/conic.h"
-#include "sketches/covariance.h"
-#include "sketches/curve.h"
-#include "sketches/io.h"
-#include "topology/planar_faces.h"
+#include "pipelines/base/atomic_file.h"
+#include "pipelines/base/sketch_input.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
+#include "sketches/io/io.h"
+#include "sketches/solve/covariance.h"
+#include "topology/faces/planar_faces.h"
 
 namespace sketchsplat {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "eval/evaluate.h"
+#include "eval/metrics/evaluate.h"
 #include "library/access.h"
 
 namespace sketchsplat {

@@ -8,8 +8,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "datasets/errors.h"
-#include "edges/undistort.h"
+#include "datasets/types/errors.h"
+#include "edges/image/undistort.h"
 
 namespace sketchsplat {
 namespace {

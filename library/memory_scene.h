@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "pipelines/detectors.h"
+#include "pipelines/detectors/detectors.h"
 #include "sketchsplat/reconstruct.h"
 
 namespace sketchsplat {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "library/access.h"
 #include "library/memory_scene.h"
-#include "pipelines/reconstruct.h"
+#include "pipelines/method/reconstruct.h"
 #include "sketchsplat/version.h"
 
 namespace sketchsplat {

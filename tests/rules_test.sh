@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # rules_test.sh SOURCE BUILD [RULE]: what holds of every file of the repository. Rules: licences,
-# packages, cgal, style_sheet, words, columns.
+# packages, cgal, style_sheet, words, columns, folders.
 set -uo pipefail
 build=$(readlink -f "$2")
 cd "$1"
@@ -42,7 +42,7 @@ cgal() {  # no header of CGAL under the GPL takes part in a build
 }
 
 style_sheet() {  # a formatter of C++ makes of color-scheme: what no browser knows
-  ! grep -nE '[a-z] - [a-z]| : |[0-9] %' pipelines/page.css || fail "pipelines/page.css is no CSS"
+  ! grep -nE '[a-z] - [a-z]| : |[0-9] %' pipelines/pages/page.css || fail "pipelines/pages/page.css is no CSS"
 }
 
 words() {  # README.md is short, and what it and docs/ link to exists
@@ -64,6 +64,38 @@ columns() {  # as .clang-format has it; texts of JSON may be longer
       LC_ALL=C.UTF-8 xargs grep -nE '^.{101,}' | grep -v 'R"(' | cut -c1-80)
 }
 
-for rule in ${3:-licences packages cgal style_sheet words columns}; do $rule; done
+folders() {  # code reads headers of its own folder, and of folders that its target links
+  local line
+  while read -r line; do fail "$line"; done < <(
+    find datasets sketches raster topology edges eval pipelines \( -name '*.cc' -o -name '*.h' \) \
+      -exec grep -Ho '^#include ".*/' {} + | sed 's/:#include "/ /' |
+      awk '
+        function reach(from, to, i, n, next_one) {  # by links, through any number of others
+          if (seen[to]++) return
+          below[from, to] = 1
+          n = split(links[to], next_one)
+          for (i = 1; i <= n; i++) {
+            if (next_one[i] == from) print "a cycle: " from " -> ... -> " to " -> " from
+            reach(from, next_one[i])
+          }
+        }
+        FNR == NR {
+          target[$1] = $2
+          for (i = 3; i <= NF; i++) links[$2] = links[$2] " " $i
+          next
+        }
+        FNR == 1 { for (f in target) { split("", seen); reach(target[f], target[f]) } }
+        {
+          folder = header = $0
+          sub("/[^/]* .*", "", folder)
+          sub(".* ", "", header)
+          sub("/$", "", header)
+          if (!(folder in target)) print folder " belongs to no target"
+          else if (header in target && !((target[folder], target[header]) in below))
+            print $1 " reads a header of " header ", which " target[folder] " does not link"
+        }' "$build/generated/folders" -)
+}
+
+for rule in ${3:-licences packages cgal style_sheet words columns folders}; do $rule; done
 [ $failed = 0 ] && echo passed
 exit $failed

@@ -8,13 +8,13 @@
 #include <limits>
 #include <optional>
 
-#include "datasets/errors.h"
-#include "datasets/median.h"
+#include "datasets/types/errors.h"
+#include "datasets/types/median.h"
 #include "eval/inspect/pose_candidates.h"
 #include "eval/inspect/pose_fit.h"
-#include "sketches/covariance.h"
-#include "sketches/curve.h"
-#include "sketches/curve_jacobian.h"
+#include "sketches/curve/curve.h"
+#include "sketches/curve/curve_jacobian.h"
+#include "sketches/solve/covariance.h"
 
 namespace sketchsplat {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eval/inspect/nominal.h"
-#include "sketches/similarity.h"
+#include "sketches/solve/similarity.h"
 
 namespace sketchsplat {
 

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "eval/inspect/edge_samples.h"
-#include "sketches/closest.h"
-#include "sketches/curve.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

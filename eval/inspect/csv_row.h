@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sketches/io_number.h"
+#include "sketches/io/io_number.h"
 
 namespace sketchsplat {
 

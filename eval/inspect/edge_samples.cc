@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
 

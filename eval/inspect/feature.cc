@@ -8,8 +8,8 @@
 #include <cmath>
 #include <map>
 
-#include "sketches/curve.h"
-#include "sketches/curve_jacobian.h"
+#include "sketches/curve/curve.h"
+#include "sketches/curve/curve_jacobian.h"
 
 namespace sketchsplat {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "datasets/errors.h"
-#include "sketches/curve.h"
+#include "datasets/types/errors.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "eval/inspect/csv_row.h"
-#include "sketches/curve_chain.h"
-#include "sketches/curve_jacobian.h"
+#include "sketches/curve/curve_chain.h"
+#include "sketches/curve/curve_jacobian.h"
 
 namespace sketchsplat {
 namespace {

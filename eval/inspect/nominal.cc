@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
-#include "datasets/errors.h"
-#include "sketches/conic.h"
-#include "sketches/curve.h"
-#include "topology/planar_faces.h"
+#include "datasets/types/errors.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
+#include "topology/faces/planar_faces.h"
 
 namespace sketchsplat {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
 
@@ -35,7 +35,7 @@ struct Nominal {
   double extent = 0;  ///< longest side of its box
 };
 
-/// Groups strokes to edges and finds the planes of faces (topology/planar_faces.h).
+/// Groups strokes to edges and finds the planes of faces (topology/faces/planar_faces.h).
 /// Throws InputError(`name`, ...) if the sketch holds no stroke.
 Nominal make_nominal(const Sketch& sketch, const std::string& name);
 

@@ -9,8 +9,8 @@
 #include <map>
 
 #include "eval/inspect/edge_samples.h"
-#include "sketches/conic.h"
-#include "sketches/curve.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "sketches/similarity.h"
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
+#include "sketches/solve/similarity.h"
 
 namespace sketchsplat {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sketches/closest.h"
-#include "sketches/curve.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "eval/inspect/edge_samples.h"
 #include "eval/inspect/nominal.h"
-#include "sketches/similarity.h"
+#include "sketches/solve/similarity.h"
 
 namespace sketchsplat {
 

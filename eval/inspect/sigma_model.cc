@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/median.h"
-#include "sketches/covariance.h"
-#include "sketches/curve.h"
-#include "sketches/curve_jacobian.h"
+#include "datasets/types/median.h"
+#include "sketches/curve/curve.h"
+#include "sketches/curve/curve_jacobian.h"
+#include "sketches/solve/covariance.h"
 
 namespace sketchsplat {
 namespace {

@@ -9,7 +9,7 @@
 #include "eval/inspect/alignment.h"
 #include "eval/inspect/association.h"
 #include "eval/inspect/tolerance.h"
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
 

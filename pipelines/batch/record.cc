@@ -8,10 +8,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
-#include "pipelines/atomic_file.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
 #include "pipelines/batch/thumbnail.h"
-#include "sketches/json_text.h"
+#include "sketches/io/json_text.h"
 
 namespace sketchsplat {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipelines/run_report.h"
+#include "pipelines/base/run_report.h"
 
 namespace sketchsplat {
 

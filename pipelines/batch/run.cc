@@ -10,15 +10,15 @@
 #include <list>
 #include <memory>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/hash.h"
+#include "pipelines/base/resources.h"
+#include "pipelines/base/version.h"
 #include "pipelines/batch/scene_input.h"
 #include "pipelines/batch/signals.h"
 #include "pipelines/batch/worker.h"
 #include "pipelines/bench/plan.h"
-#include "pipelines/estimate.h"
-#include "pipelines/hash.h"
-#include "pipelines/resources.h"
-#include "pipelines/version.h"
+#include "pipelines/method/estimate.h"
 
 namespace sketchsplat {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "datasets/open_options.h"
-#include "pipelines/batch/schedule.h"
+#include "datasets/readers/open_options.h"
+#include "pipelines/base/progress.h"
+#include "pipelines/base/schedule.h"
 #include "pipelines/batch/store.h"
 #include "pipelines/batch/summary.h"
-#include "pipelines/options.h"
-#include "pipelines/progress.h"
+#include "pipelines/stages/options.h"
 
 namespace sketchsplat {
 

@@ -14,9 +14,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "datasets/ground_truth.h"
-#include "datasets/scene.h"
-#include "pipelines/hash.h"
+#include "datasets/readers/scene.h"
+#include "datasets/truth/ground_truth.h"
+#include "pipelines/base/hash.h"
 
 namespace sketchsplat {
 namespace {

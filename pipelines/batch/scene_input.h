@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/open_options.h"
+#include "datasets/readers/open_options.h"
 #include "pipelines/batch/scene_list.h"
 
 namespace sketchsplat {

@@ -9,10 +9,10 @@
 #include <iostream>
 #include <set>
 
-#include "datasets/errors.h"
-#include "datasets/scene.h"
-#include "pipelines/fields.h"
-#include "pipelines/hash.h"
+#include "datasets/readers/scene.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/fields.h"
+#include "pipelines/base/hash.h"
 
 namespace sketchsplat {
 namespace {

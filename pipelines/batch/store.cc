@@ -9,8 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "datasets/errors.h"
-#include "pipelines/atomic_file.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
 
 namespace sketchsplat {
 namespace {

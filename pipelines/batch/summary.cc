@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "eval/csv.h"
-#include "pipelines/page.h"
-#include "pipelines/version.h"
+#include "eval/metrics/csv.h"
+#include "pipelines/base/version.h"
+#include "pipelines/pages/page.h"
 
 namespace sketchsplat {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "eval/prediction.h"
+#include "eval/metrics/prediction.h"
 
 namespace sketchsplat {
 namespace {

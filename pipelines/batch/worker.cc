@@ -8,9 +8,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "pipelines/batch/scene_input.h"
-#include "pipelines/cli.h"
+#include "pipelines/command/cli.h"
 
 namespace sketchsplat {
 namespace {

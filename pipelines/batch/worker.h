@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "pipelines/base/child.h"
 #include "pipelines/batch/record.h"
 #include "pipelines/batch/scene_list.h"
 #include "pipelines/batch/store.h"
-#include "pipelines/child.h"
 
 namespace sketchsplat {
 

@@ -3,9 +3,9 @@
 
 #include <stdexcept>
 
-#include "pipelines/atomic_file.h"
+#include "pipelines/base/atomic_file.h"
+#include "pipelines/base/plugin_path.h"
 #include "pipelines/bench/chart.h"
-#include "pipelines/plugin_path.h"
 
 namespace sketchsplat {
 namespace {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <thread>
 
-#include "pipelines/hash.h"
-#include "pipelines/version.h"
+#include "pipelines/base/hash.h"
+#include "pipelines/base/version.h"
 
 namespace sketchsplat {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipelines/options.h"
+#include "pipelines/stages/options.h"
 
 namespace sketchsplat {
 

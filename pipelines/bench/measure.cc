@@ -10,14 +10,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
-#include "datasets/scene.h"
-#include "datasets/synthetic/synthesize.h"
-#include "pipelines/atomic_file.h"
+#include "datasets/readers/scene.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
+#include "pipelines/base/child.h"
+#include "pipelines/base/hash.h"
 #include "pipelines/bench/machine.h"
-#include "pipelines/child.h"
-#include "pipelines/cli.h"
-#include "pipelines/hash.h"
+#include "pipelines/command/cli.h"
 
 namespace sketchsplat {
 namespace {

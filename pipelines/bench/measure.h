@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
+#include "pipelines/base/progress.h"
 #include "pipelines/bench/plan.h"
 #include "pipelines/bench/row.h"
-#include "pipelines/progress.h"
 
 namespace sketchsplat {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "datasets/synthetic/rig.h"
+#include "datasets/synthetic/render/rig.h"
 
 namespace sketchsplat {
 namespace {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
-#include "eval/csv.h"
-#include "pipelines/version.h"
-#include "sketches/json_text.h"
+#include "datasets/types/errors.h"
+#include "eval/metrics/csv.h"
+#include "pipelines/base/version.h"
+#include "sketches/io/json_text.h"
 
 namespace sketchsplat {
 namespace {

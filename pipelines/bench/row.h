@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipelines/options.h"
-#include "pipelines/run_report.h"
+#include "pipelines/base/run_report.h"
+#include "pipelines/stages/options.h"
 
 namespace sketchsplat {
 

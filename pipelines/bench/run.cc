@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <map>
 
-#include "datasets/errors.h"
-#include "datasets/ground_truth.h"
-#include "pipelines/atomic_file.h"
+#include "datasets/truth/ground_truth.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
 #include "pipelines/bench/machine.h"
 #include "pipelines/bench/measure.h"
 

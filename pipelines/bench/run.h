@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "pipelines/base/progress.h"
 #include "pipelines/bench/row.h"
 #include "pipelines/bench/suite.h"
-#include "pipelines/progress.h"
 
 namespace sketchsplat {
 

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <set>
 
-#include "datasets/errors.h"
-#include "datasets/synthetic/parts.h"
-#include "pipelines/cli.h"
-#include "pipelines/cli_help.h"
+#include "datasets/synthetic/cad/parts.h"
+#include "datasets/types/errors.h"
+#include "pipelines/command/cli.h"
+#include "pipelines/command/cli_help.h"
 
 namespace sketchsplat {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/options.h"
+#include "pipelines/stages/options.h"
 
 namespace sketchsplat {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "datasets/colmap_write.h"
-#include "datasets/errors.h"
-#include "datasets/scene.h"
+#include "datasets/readers/colmap_write.h"
+#include "datasets/readers/scene.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 #include "tests/support/colmap_files.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/float_image_io.h"
+#include "datasets/io/float_image_io.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

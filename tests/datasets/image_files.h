@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/errors.h"
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
+#include "datasets/types/errors.h"
 
 namespace sketchsplat::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <limits>
 #include <thread>
 
-#include "datasets/camera.h"
-#include "datasets/errors.h"
+#include "datasets/types/camera.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/image_files.h"
 #include "tests/datasets/temp_folder.h"
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "datasets/camera.h"
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
+#include "datasets/types/camera.h"
 #include "tests/datasets/image_files.h"
 #include "tests/datasets/temp_folder.h"
 

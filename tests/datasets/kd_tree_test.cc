@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/kd_tree.h"
+#include "datasets/neighbours/kd_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/lens.h"
+#include "datasets/types/lens.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <vector>
 
-#include "datasets/view.h"
+#include "datasets/types/view.h"
 
 namespace sketchsplat {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "datasets/errors.h"
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/normal_map.h"
+#include "datasets/io/normal_map.h"
 
 #include <gtest/gtest.h>
 
-#include "datasets/errors.h"
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

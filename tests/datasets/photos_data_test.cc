@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
 
 namespace sketchsplat {
 namespace {

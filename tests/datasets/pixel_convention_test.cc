@@ -10,7 +10,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "datasets/errors.h"
-#include "datasets/far_views.h"
+#include "datasets/readers/far_views.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

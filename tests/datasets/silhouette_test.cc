@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "datasets/errors.h"
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

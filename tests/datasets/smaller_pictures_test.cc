@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/smaller_pictures.h"
+#include "datasets/readers/smaller_pictures.h"
 
 #include <gtest/gtest.h>
 

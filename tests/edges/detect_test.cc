@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "edges/detect.h"
+#include "edges/image/detect.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "edges/detect_map.h"
+#include "edges/image/detect_map.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/edge_planes.h"
+#include "edges/surfels/start/edge_planes.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/edge_tracks.h"
+#include "edges/surfels/start/edge_tracks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/geometry_edges.h"
+#include "edges/depth/geometry_edges.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "datasets/synthetic/visibility.h"
-#include "edges/geometry_edges.h"
-#include "eval/edge_maps.h"
+#include "datasets/synthetic/render/visibility.h"
+#include "edges/depth/geometry_edges.h"
+#include "eval/metrics/edge_maps.h"
 #include "tests/support/geometry_truth.h"
 
 namespace sketchsplat {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/hull.h"
+#include "edges/views/hull.h"
 
 #include <gtest/gtest.h>
 

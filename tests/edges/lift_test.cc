@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "edges/lift.h"
+#include "edges/views/lift.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "edges/link.h"
-#include "edges/match.h"
+#include "edges/views/link.h"
+#include "edges/views/match.h"
 #include "tests/support/strokes.h"
 #include "tests/support/wireframe.h"
 

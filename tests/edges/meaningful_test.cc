@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "edges/meaningful.h"
+#include "edges/image/meaningful.h"
 
-#include "edges/focus.h"
+#include "edges/views/focus.h"
 
 #include <gtest/gtest.h>
 

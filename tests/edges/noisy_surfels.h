@@ -5,8 +5,8 @@
 #include <functional>
 #include <random>
 
-#include "edges/surfel_set.h"
-#include "edges/surfel_shading.h"
+#include "edges/surfels/model/surfel_set.h"
+#include "edges/surfels/model/surfel_shading.h"
 
 namespace sketchsplat {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "edges/find_object.h"
+#include "edges/views/find_object.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "edges/focus.h"
-#include "edges/lift.h"
+#include "edges/views/focus.h"
+#include "edges/views/lift.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/photo_hull.h"
+#include "edges/surfels/start/photo_hull.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/plane_carving.h"
+#include "edges/surfels/start/plane_carving.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/rim.h"
+#include "edges/views/rim.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "edges/sure_edges.h"
+#include "edges/surfels/start/sure_edges.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat::test {

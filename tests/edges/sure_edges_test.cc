@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/sure_edges.h"
+#include "edges/surfels/start/sure_edges.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/surfel_cylinders.h"
+#include "edges/surfels/fit/surfel_cylinders.h"
 
 #include <gtest/gtest.h>
 

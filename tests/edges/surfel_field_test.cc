@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "edges/surfel_field.h"
+#include "edges/surfels/fit/surfel_field.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "edges/surfel_smooth.h"
+#include "edges/surfels/model/surfel_smooth.h"
 
 namespace sketchsplat {
 namespace {

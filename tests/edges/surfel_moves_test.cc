@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "edges/surfel_moves.h"
+#include "edges/surfels/fit/surfel_moves.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "edges/surfel_shading.h"
+#include "edges/surfels/model/surfel_shading.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/surfel_planes.h"
+#include "edges/surfels/fit/surfel_planes.h"
 
 #include <gtest/gtest.h>
 

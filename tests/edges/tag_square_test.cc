@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/tag_square.h"
+#include "edges/tags/tag_square.h"
 
 #include <gtest/gtest.h>
 

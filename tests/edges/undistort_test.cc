@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/undistort.h"
+#include "edges/image/undistort.h"
 
 #include <gtest/gtest.h>
 

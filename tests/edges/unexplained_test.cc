@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edges/unexplained.h"
+#include "edges/views/unexplained.h"
 
 #include <gtest/gtest.h>
 

@@ -5,11 +5,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "eval/duplicates.h"
-#include "eval/evaluate.h"
-#include "eval/junctions.h"
-#include "eval/metrics.h"
-#include "eval/parameters.h"
+#include "eval/metrics/duplicates.h"
+#include "eval/metrics/evaluate.h"
+#include "eval/metrics/junctions.h"
+#include "eval/metrics/metrics.h"
+#include "eval/metrics/parameters.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "eval/edge_maps.h"
+#include "eval/metrics/edge_maps.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "tests/eval/temp_folder.h"
 
 namespace sketchsplat {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "eval/evaluate.h"
+#include "eval/metrics/evaluate.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
-#include "eval/report.h"
+#include "datasets/types/errors.h"
+#include "eval/metrics/report.h"
 
 namespace sketchsplat {
 namespace {

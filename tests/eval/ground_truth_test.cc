@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/ground_truth.h"
+#include "datasets/truth/ground_truth.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "datasets/errors.h"
-#include "datasets/published_samples.h"
-#include "sketches/io.h"
+#include "datasets/truth/published_samples.h"
+#include "datasets/types/errors.h"
+#include "sketches/io/io.h"
 #include "temp_folder.h"
 
 namespace sketchsplat {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "eval/metrics.h"
+#include "eval/metrics/metrics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "datasets/ground_truth.h"
-#include "datasets/published_samples.h"
-#include "eval/nearest.h"
+#include "datasets/truth/ground_truth.h"
+#include "datasets/truth/published_samples.h"
+#include "eval/metrics/nearest.h"
 
 namespace sketchsplat {
 namespace {

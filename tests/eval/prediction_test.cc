@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "eval/prediction.h"
+#include "eval/metrics/prediction.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "datasets/errors.h"
-#include "sketches/io.h"
+#include "datasets/types/errors.h"
+#include "sketches/io/io.h"
 #include "temp_folder.h"
 
 namespace sketchsplat {

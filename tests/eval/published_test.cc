@@ -9,8 +9,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "eval/evaluate.h"
-#include "eval/report.h"
+#include "eval/metrics/evaluate.h"
+#include "eval/metrics/report.h"
 #include "temp_folder.h"
 
 namespace fs = std::filesystem;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "eval/scenes.h"
+#include "eval/metrics/scenes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
-#include "eval/report.h"
+#include "datasets/types/errors.h"
+#include "eval/metrics/report.h"
 #include "temp_folder.h"
 
 namespace sketchsplat {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "eval/structure.h"
+#include "eval/metrics/structure.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "eval/metrics.h"
+#include "eval/metrics/metrics.h"
 
 namespace sketchsplat {
 namespace {

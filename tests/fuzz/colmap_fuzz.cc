@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cameras, images and points of a model; the first byte says whether as text or binary.
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/support/small_scene.h"
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 
 // A target of fuzzing: a reader that gets any bytes at all. It may refuse them by an InputError of
 // one line; everything else (another exception, a sanitizer's complaint, a time-out) is a finding.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Edges of others to be scored: the first byte says whether JSON (EMAP's, NEF's, ours), PLY or OBJ.
-#include "eval/prediction.h"
+#include "eval/metrics/prediction.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/support/small_scene.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The first byte is the format, the rest its scene file.
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/support/small_scene.h"
 

@@ -2,7 +2,7 @@
 // sketch.json, and what is written of it.
 #include <sstream>
 
-#include "sketches/io.h"
+#include "sketches/io/io.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/support/small_scene.h"
 

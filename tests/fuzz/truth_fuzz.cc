@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Truth as JSON, or as features of ABC with an OBJ beside them: the first byte says which.
-#include "datasets/ground_truth.h"
+#include "datasets/truth/ground_truth.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/support/small_scene.h"
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
 #include "sketchsplat/evaluate.h"
 #include "sketchsplat/reconstruct.h"
 #include "sketchsplat/version.h"

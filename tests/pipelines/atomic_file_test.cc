@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/atomic_file.h"
+#include "pipelines/base/atomic_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 
 namespace sketchsplat {
 namespace {

@@ -7,7 +7,7 @@
 #include <regex>
 #include <sstream>
 
-#include "pipelines/cli.h"
+#include "pipelines/command/cli.h"
 #include "tests/pipelines/bad_scenes.h"
 
 namespace sketchsplat {

@@ -5,11 +5,11 @@
 
 #include <filesystem>
 
-#include "datasets/errors.h"
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/fields.h"
 #include "pipelines/batch/scene_input.h"
 #include "pipelines/batch/scene_list.h"
-#include "pipelines/fields.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

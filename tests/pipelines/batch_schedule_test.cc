@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipelines/batch/schedule.h"
-#include "pipelines/estimate.h"
-#include "pipelines/resources.h"
+#include "pipelines/base/resources.h"
+#include "pipelines/base/schedule.h"
+#include "pipelines/method/estimate.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

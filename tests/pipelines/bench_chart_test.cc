@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 #include "pipelines/bench/accuracy_chart.h"
 #include "pipelines/bench/axis_report.h"
 #include "pipelines/bench/chart.h"

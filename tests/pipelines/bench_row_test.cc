@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "pipelines/bench/row.h"
 #include "tests/datasets/temp_folder.h"
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "pipelines/bench/plan.h"
 #include "pipelines/bench/suite.h"
-#include "pipelines/cli.h"
+#include "pipelines/command/cli.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The program that a child runs is this one: tests that are off play its part.
-#include "pipelines/child.h"
+#include "pipelines/base/child.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

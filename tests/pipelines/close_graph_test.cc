@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/close_graph.h"
+#include "pipelines/join/close_graph.h"
 
 #include <gtest/gtest.h>
 
-#include "sketches/conic.h"
+#include "sketches/curve/conic.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/confidence.h"
+#include "pipelines/survey/confidence.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "pipelines/polish.h"
-#include "sketches/covariance.h"
+#include "pipelines/adjust/polish.h"
+#include "sketches/solve/covariance.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/config_file.h"
+#include "pipelines/command/config_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "tests/pipelines/program.h"
 
 namespace sketchsplat {

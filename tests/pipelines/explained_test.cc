@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/explained.h"
+#include "pipelines/survey/explained.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "sketches/io.h"
+#include "sketches/io/io.h"
 #include "tests/pipelines/program.h"
 
 namespace sketchsplat {

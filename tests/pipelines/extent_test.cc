@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/extent.h"
+#include "pipelines/survey/extent.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/family_start.h"
+#include "pipelines/method/family_start.h"
 
 #include <gtest/gtest.h>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "tests/pipelines/rendered_part.h"
 
 namespace sketchsplat {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/fields.h"
+#include "pipelines/base/fields.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "pipelines/cli_help.h"
-#include "pipelines/options.h"
+#include "pipelines/command/cli_help.h"
+#include "pipelines/stages/options.h"
 
 namespace sketchsplat {
 namespace {

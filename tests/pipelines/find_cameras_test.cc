@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Photographs alone, and a script in COLMAP's place that writes down how it was called.
-#include "pipelines/find_cameras.h"
+#include "pipelines/cameras/find_cameras.h"
 
 #include <gmock/gmock.h>
 
-#include "datasets/errors.h"
-#include "pipelines/child_lines.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/child_lines.h"
 #include "tests/pipelines/program.h"
 
 namespace sketchsplat {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/gap.h"
+#include "pipelines/survey/gap.h"
 
 #include <gtest/gtest.h>
 
-#include "sketches/curve.h"
-#include "sketches/segment.h"
+#include "sketches/curve/curve.h"
+#include "sketches/fit/segment.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "datasets/errors.h"
-#include "datasets/geometry_maps.h"
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
+#include "datasets/types/errors.h"
+#include "datasets/types/geometry_maps.h"
 #include "tests/pipelines/rendered_part.h"
 
 namespace sketchsplat {

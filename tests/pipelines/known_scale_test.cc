@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/known_scale.h"
+#include "pipelines/results/known_scale.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
-#include "sketches/covariance.h"
+#include "datasets/types/errors.h"
+#include "sketches/solve/covariance.h"
 
 namespace sketchsplat {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "datasets/errors.h"
-#include "sketches/curve.h"
+#include "datasets/types/errors.h"
+#include "sketches/curve/curve.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/colmap_files.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/likelihood.h"
+#include "pipelines/survey/likelihood.h"
 
 #include <gtest/gtest.h>
 
-#include "edges/unexplained.h"
+#include "edges/views/unexplained.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

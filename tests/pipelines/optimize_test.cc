@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/optimize.h"
+#include "pipelines/adjust/optimize.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "raster/reference.h"
+#include "raster/splats/reference.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

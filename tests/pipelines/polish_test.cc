@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/polish.h"
+#include "pipelines/adjust/polish.h"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 #include <iterator>
 #include <string>
 
-#include "datasets/scene.h"
-#include "pipelines/cli.h"
+#include "datasets/readers/scene.h"
+#include "pipelines/command/cli.h"
 
 namespace sketchsplat {
 

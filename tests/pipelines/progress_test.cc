@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/progress.h"
+#include "pipelines/base/progress.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <thread>
 
-#include "datasets/errors.h"
-#include "pipelines/run_report.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/run_report.h"
 
 namespace sketchsplat {
 namespace {

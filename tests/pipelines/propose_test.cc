@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/propose.h"
+#include "pipelines/survey/propose.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/rechain.h"
+#include "pipelines/join/rechain.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "pipelines/options.h"
+#include "pipelines/stages/options.h"
 #include "tests/pipelines/program.h"
 
 namespace sketchsplat {

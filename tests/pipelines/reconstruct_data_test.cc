@@ -4,8 +4,8 @@
 
 #include <ostream>
 
-#include "pipelines/reconstruct.h"
-#include "sketches/curve.h"
+#include "pipelines/method/reconstruct.h"
+#include "sketches/curve/curve.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/colmap_files.h"
 

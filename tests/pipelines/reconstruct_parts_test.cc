@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <ostream>
 
-#include "pipelines/reconstruct.h"
+#include "pipelines/method/reconstruct.h"
 #include "tests/pipelines/rendered_part.h"
 
 namespace sketchsplat {

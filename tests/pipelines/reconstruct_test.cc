@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The whole method on rendered parts whose edges are known.
-#include "pipelines/reconstruct.h"
+#include "pipelines/method/reconstruct.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "datasets/errors.h"
-#include "pipelines/stages.h"
-#include "sketches/curve.h"
+#include "datasets/types/errors.h"
+#include "pipelines/stages/stages.h"
+#include "sketches/curve/curve.h"
 #include "tests/pipelines/rendered_part.h"
 
 namespace sketchsplat {

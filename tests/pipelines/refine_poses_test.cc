@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/refine_poses.h"
+#include "pipelines/cameras/refine_poses.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
-#include "datasets/errors.h"
-#include "datasets/scene.h"
-#include "pipelines/camera_unknowns.h"
+#include "datasets/readers/scene.h"
+#include "datasets/types/errors.h"
+#include "pipelines/cameras/camera_unknowns.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/strokes.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/regularize.h"
+#include "pipelines/adjust/regularize.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "pipelines/polish.h"
-#include "pipelines/regularity_finder.h"
-#include "sketches/conic.h"
-#include "sketches/smooth_joint.h"
+#include "pipelines/adjust/polish.h"
+#include "pipelines/adjust/regularity_finder.h"
+#include "sketches/curve/conic.h"
+#include "sketches/graph/smooth_joint.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

@@ -5,12 +5,12 @@
 #include <sstream>
 #include <string>
 
-#include "datasets/ground_truth.h"
-#include "datasets/scene.h"
-#include "datasets/synthetic/synthesize.h"
-#include "eval/evaluate.h"
-#include "pipelines/reconstruct.h"
-#include "sketches/io.h"
+#include "datasets/readers/scene.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/truth/ground_truth.h"
+#include "eval/metrics/evaluate.h"
+#include "pipelines/method/reconstruct.h"
+#include "sketches/io/io.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat::test {

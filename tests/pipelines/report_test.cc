@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/report.h"
+#include "pipelines/results/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <random>
 #include <regex>
 
-#include "pipelines/overlay.h"
+#include "pipelines/pages/overlay.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

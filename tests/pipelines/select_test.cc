@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/select.h"
+#include "pipelines/survey/select.h"
 
 #include <gtest/gtest.h>
 
-#include "pipelines/stages.h"
+#include "pipelines/stages/stages.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/splice.h"
+#include "pipelines/join/splice.h"
 
 #include <gtest/gtest.h>
 
-#include "sketches/closest.h"
+#include "sketches/curve/closest.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/surfel_detector.h"
+#include "pipelines/detectors/surfel_detector.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include <filesystem>
 
-#include "datasets/errors.h"
-#include "datasets/geometry_maps.h"
-#include "eval/edge_maps.h"
-#include "eval/map_errors.h"
-#include "pipelines/stages.h"
+#include "datasets/types/errors.h"
+#include "datasets/types/geometry_maps.h"
+#include "eval/metrics/edge_maps.h"
+#include "eval/metrics/map_errors.h"
+#include "pipelines/stages/stages.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/strokes.h"
 

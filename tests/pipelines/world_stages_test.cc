@@ -3,8 +3,8 @@
 // things is tested where it is found (object_region_test).
 #include <gtest/gtest.h>
 
-#include "datasets/errors.h"
-#include "pipelines/stages.h"
+#include "datasets/types/errors.h"
+#include "pipelines/stages/stages.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

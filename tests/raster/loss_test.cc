@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "raster/loss.h"
+#include "raster/splats/loss.h"
 
 #include <gtest/gtest.h>
 

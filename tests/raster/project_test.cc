@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "raster/project.h"
+#include "raster/splats/project.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "raster/reference.h"
+#include "raster/splats/reference.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>

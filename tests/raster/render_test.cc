@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "raster/render.h"
+#include "raster/splats/render.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "raster/render.h"
+#include "raster/splats/render.h"
 
 namespace sketchsplat {
 

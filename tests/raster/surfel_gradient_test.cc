@@ -2,7 +2,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include "raster/surfel.h"
+#include "raster/surfels/surfel.h"
 #include "surfel_scene.h"
 
 namespace sketchsplat {

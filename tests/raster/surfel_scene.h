@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "raster/surfel_reference.h"
+#include "raster/surfels/surfel_reference.h"
 #include "scene.h"
 
 namespace sketchsplat {

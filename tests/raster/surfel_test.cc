@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "raster/surfel.h"
+#include "raster/surfels/surfel.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "raster/surfel_tiles.h"
+#include "raster/surfels/surfel_tiles.h"
 #include "surfel_scene.h"
 
 namespace sketchsplat {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/closest.h"
+#include "sketches/curve/closest.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

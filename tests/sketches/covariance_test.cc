@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/covariance.h"
+#include "sketches/solve/covariance.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/curve_chain.h"
+#include "sketches/curve/curve_chain.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include "sketches/conic.h"
+#include "sketches/curve/conic.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

@@ -4,11 +4,11 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "sketches/closest.h"
-#include "sketches/conic.h"
-#include "sketches/curve.h"
-#include "sketches/ellipse_run.h"
-#include "sketches/segment.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
+#include "sketches/fit/ellipse_run.h"
+#include "sketches/fit/segment.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

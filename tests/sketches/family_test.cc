@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/family.h"
+#include "sketches/solve/family.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "sketches/curve.h"
-#include "sketches/similarity.h"
+#include "sketches/curve/curve.h"
+#include "sketches/solve/similarity.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

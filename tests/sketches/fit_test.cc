@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/fit.h"
+#include "sketches/fit/fit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "sketches/closest.h"
-#include "sketches/curve.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/curve.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

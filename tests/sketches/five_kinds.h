@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
 

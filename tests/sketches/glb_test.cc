@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "sketches/io_glb.h"
+#include "sketches/io/io_glb.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

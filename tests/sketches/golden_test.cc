@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "sketches/io.h"
+#include "sketches/io/io.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

@@ -9,9 +9,9 @@
 #include <map>
 #include <sstream>
 
-#include "sketches/closest.h"
-#include "sketches/curve.h"
-#include "sketches/io.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/curve.h"
+#include "sketches/io/io.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

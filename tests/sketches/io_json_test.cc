@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "datasets/errors.h"
-#include "sketches/curve.h"
-#include "sketches/curve_chain.h"
-#include "sketches/io.h"
+#include "datasets/types/errors.h"
+#include "sketches/curve/curve.h"
+#include "sketches/curve/curve_chain.h"
+#include "sketches/io/io.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/refine_sketch.h"
+#include "sketches/solve/refine_sketch.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sketches/closest.h"
-#include "sketches/conic.h"
-#include "sketches/curve.h"
-#include "sketches/smooth_joint.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
+#include "sketches/graph/smooth_joint.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/relations.h"
+#include "sketches/solve/relations.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "sketches/gaussian.h"
+#include "sketches/solve/gaussian.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

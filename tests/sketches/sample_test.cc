@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/sample.h"
+#include "sketches/curve/sample.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

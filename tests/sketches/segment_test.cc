@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/segment.h"
+#include "sketches/fit/segment.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
 
 #include <gmock/gmock.h>
 

@@ -26,9 +26,9 @@
 #include <set>
 
 #include "gmock/gmock.h"
-#include "sketches/io.h"
+#include "sketches/io/io.h"
 #include "tests/sketches/five_kinds.h"
-#include "topology/planar_faces.h"
+#include "topology/faces/planar_faces.h"
 
 namespace sketchsplat {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
 
 namespace sketchsplat::test {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
-#include "datasets/geometry_maps.h"
-#include "datasets/synthetic/synthesize.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/types/geometry_maps.h"
 
 namespace sketchsplat::test {
 

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <string>
 
-#include "datasets/float_image_io.h"
-#include "datasets/image_io.h"
+#include "datasets/io/float_image_io.h"
+#include "datasets/io/image_io.h"
 #include "tests/support/colmap_files.h"
 
 namespace sketchsplat::test {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "sketches/conic.h"
-#include "sketches/curve.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat::test {

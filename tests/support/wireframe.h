@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "edges/lift.h"
-#include "edges/match.h"
+#include "edges/views/lift.h"
+#include "edges/views/match.h"
 
 namespace sketchsplat::test {
 

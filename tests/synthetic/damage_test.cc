@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
-#include "datasets/errors.h"
-#include "datasets/scene.h"
-#include "datasets/synthetic/synthesize.h"
+#include "datasets/readers/scene.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/synthetic/mesh_part.h"
+#include "datasets/synthetic/cad/mesh_part.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 #include <limits>
 #include <sstream>
 
-#include "datasets/errors.h"
-#include "datasets/synthetic/mesh_runs.h"
-#include "datasets/synthetic/synthesize.h"
-#include "sketches/io.h"
+#include "datasets/synthetic/cad/mesh_runs.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/types/errors.h"
+#include "sketches/io/io.h"
 
 namespace sketchsplat {
 namespace {

@@ -6,11 +6,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
-#include "datasets/float_image_io.h"
-#include "datasets/image_io.h"
-#include "datasets/synthetic/synthesize.h"
-#include "datasets/synthetic/visibility.h"
+#include "datasets/io/float_image_io.h"
+#include "datasets/io/image_io.h"
+#include "datasets/synthetic/render/visibility.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/types/errors.h"
 #include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {

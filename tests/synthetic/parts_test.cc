@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/synthetic/parts.h"
+#include "datasets/synthetic/cad/parts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "datasets/errors.h"
-#include "datasets/synthetic/truth.h"
+#include "datasets/synthetic/cad/truth.h"
+#include "datasets/types/errors.h"
 
 namespace sketchsplat {
 namespace {

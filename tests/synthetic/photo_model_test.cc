@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "datasets/ground_truth.h"
-#include "datasets/scene.h"
+#include "datasets/readers/scene.h"
+#include "datasets/truth/ground_truth.h"
 #include "tests/datasets/temp_folder.h"
 #include "tests/synthetic/small_photographs.h"
 

@@ -13,11 +13,11 @@
 #include <numeric>
 #include <sstream>
 
-#include "datasets/errors.h"
-#include "datasets/ground_truth.h"
-#include "datasets/median.h"
-#include "datasets/scene.h"
-#include "datasets/synthetic/synthesize.h"
+#include "datasets/readers/scene.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/truth/ground_truth.h"
+#include "datasets/types/errors.h"
+#include "datasets/types/median.h"
 #include "tests/datasets/temp_folder.h"
 #include "tests/synthetic/small_photographs.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/synthetic/pose_error.h"
+#include "datasets/synthetic/render/pose_error.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
-#include "datasets/synthetic/noise.h"
-#include "datasets/synthetic/rig.h"
+#include "datasets/synthetic/render/noise.h"
+#include "datasets/synthetic/render/rig.h"
 
 namespace sketchsplat {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "datasets/synthetic/synthesize.h"
+#include "datasets/synthetic/scene/synthesize.h"
 
 namespace sketchsplat::test {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/synthetic/synthesize.h"
+#include "datasets/synthetic/scene/synthesize.h"
 
 namespace sketchsplat {
 namespace {

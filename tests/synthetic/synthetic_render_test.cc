@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "datasets/synthetic/parts.h"
-#include "datasets/synthetic/synthesize.h"
+#include "datasets/synthetic/cad/parts.h"
+#include "datasets/synthetic/scene/synthesize.h"
 
 namespace sketchsplat {
 namespace {

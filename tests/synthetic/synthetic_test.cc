@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "datasets/errors.h"
-#include "datasets/synthetic/curve_kind.h"
-#include "datasets/synthetic/parts.h"
-#include "datasets/synthetic/synthesize.h"
-#include "sketches/closest.h"
-#include "sketches/curve.h"
+#include "datasets/synthetic/cad/curve_kind.h"
+#include "datasets/synthetic/cad/parts.h"
+#include "datasets/synthetic/scene/synthesize.h"
+#include "datasets/types/errors.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/synthetic/write_abc.h"
+#include "datasets/synthetic/write/write_abc.h"
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "datasets/abc_features.h"
-#include "datasets/ground_truth.h"
+#include "datasets/truth/abc_features.h"
+#include "datasets/truth/ground_truth.h"
 
 namespace sketchsplat {
 namespace {

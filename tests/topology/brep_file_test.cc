@@ -17,7 +17,7 @@
 #include <map>
 #include <sstream>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "gmock/gmock.h"
 #include "tests/topology/solids.h"
 #include "topology/brep/solid_step.h"

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <vector>
 
-#include "sketches/curve.h"
-#include "sketches/sketch.h"
-#include "topology/passes.h"
+#include "sketches/curve/curve.h"
+#include "sketches/graph/sketch.h"
+#include "topology/core/passes.h"
 
 namespace sketchsplat {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "sketches/closest.h"
-#include "sketches/conic.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/conic.h"
 #include "tests/topology/build_sketch.h"
-#include "topology/refit.h"
+#include "topology/core/refit.h"
 
 namespace sketchsplat {
 namespace {

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <random>
 
-#include "sketches/conic.h"
+#include "sketches/curve/conic.h"
 #include "tests/topology/build_sketch.h"
-#include "topology/plain_curve.h"
-#include "topology/simplify.h"
+#include "topology/core/plain_curve.h"
+#include "topology/passes/simplify.h"
 
 namespace sketchsplat {
 namespace {

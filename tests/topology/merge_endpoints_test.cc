@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/topology/build_sketch.h"
-#include "topology/description.h"
+#include "topology/core/description.h"
 
 namespace sketchsplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "topology/refit.h"
+#include "topology/core/refit.h"
 
 #include "tests/topology/build_sketch.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "topology/simplify.h"
+#include "topology/passes/simplify.h"
 
 #include <limits>
 

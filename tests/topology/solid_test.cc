@@ -4,10 +4,10 @@
 #include <random>
 
 #include "gmock/gmock.h"
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 #include "tests/topology/solids.h"
 #include "topology/brep/solid_step.h"
-#include "topology/find_planes.h"
+#include "topology/faces/find_planes.h"
 #include "topology/solid/find_solid.h"
 #include "topology/solid/surface.h"
 

@@ -5,7 +5,7 @@
 #include <TopoDS_Solid.hxx>
 #include <vector>
 
-#include "sketches/solid.h"
+#include "sketches/graph/solid.h"
 
 namespace sketchsplat::brep {
 

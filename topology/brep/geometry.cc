@@ -18,9 +18,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sketches/conic.h"
-#include "sketches/curve.h"
-#include "sketches/step_file.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
+#include "sketches/io/step_file.h"
 
 namespace sketchsplat::brep {
 namespace {

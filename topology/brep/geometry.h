@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sketches/solid.h"
+#include "sketches/graph/solid.h"
 
 namespace sketchsplat::brep {
 

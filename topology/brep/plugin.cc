@@ -5,6 +5,7 @@ namespace {
 
 const sketchsplat::BrepPlugin kPlugin = {
     sketchsplat::write_solid_step,
+    sketchsplat::compare_solids,
 };
 
 }  // namespace

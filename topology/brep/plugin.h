@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "topology/brep/compare.h"
 #include "topology/brep/solid_step.h"
 
 namespace sketchsplat {
@@ -13,6 +14,7 @@ namespace sketchsplat {
 struct BrepPlugin {
   SolidCheck (*write_solid_step)(const Solid& solid, const std::string& path,
                                  const StepSolidOptions& options);
+  SolidComparison (*compare_solids)(const std::string& path, const std::string& true_path);
 };
 
 constexpr char kBrepPluginFile[] = "sketchsplat_brep.so";

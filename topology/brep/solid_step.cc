@@ -7,8 +7,8 @@
 #include <cmath>
 #include <gp_Trsf.hxx>
 
-#include "datasets/errors.h"
-#include "sketches/curve.h"
+#include "datasets/types/errors.h"
+#include "sketches/curve/curve.h"
 #include "topology/brep/build_solid.h"
 #include "topology/brep/check.h"
 #include "topology/brep/geometry.h"

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "sketches/length_unit.h"
-#include "sketches/solid.h"
+#include "sketches/graph/solid.h"
+#include "sketches/io/length_unit.h"
 
 namespace sketchsplat {
 

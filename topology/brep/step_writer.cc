@@ -38,8 +38,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "datasets/errors.h"
-#include "sketches/step_file.h"
+#include "datasets/types/errors.h"
+#include "sketches/io/step_file.h"
 #include "topology/brep/check.h"
 
 namespace sketchsplat::brep {

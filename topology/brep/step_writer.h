@@ -4,7 +4,7 @@
 #include <TopoDS_Shape.hxx>
 #include <string>
 
-#include "sketches/length_unit.h"
+#include "sketches/io/length_unit.h"
 
 namespace sketchsplat::brep {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sketches/curve.h"
+#include "sketches/curve/curve.h"
 #include "topology/solid/surface.h"
 
 namespace sketchsplat {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "sketches/solid.h"
+#include "sketches/graph/solid.h"
 
 namespace sketchsplat {
 

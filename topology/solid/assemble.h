@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sketches/solid.h"
+#include "sketches/graph/solid.h"
 #include "topology/solid/cells.h"
 #include "topology/solid/choose.h"
 #include "topology/solid/find_surfaces.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "topology/stroke_graph.h"
+#include "topology/faces/stroke_graph.h"
 
 namespace sketchsplat {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "sketches/face.h"
-#include "sketches/sketch.h"
+#include "sketches/graph/face.h"
+#include "sketches/graph/sketch.h"
 #include "topology/solid/find_surfaces.h"
 #include "topology/solid/surface.h"
 

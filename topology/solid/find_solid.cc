@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sketches/curve.h"
-#include "topology/find_planes.h"
+#include "sketches/curve/curve.h"
+#include "topology/faces/find_planes.h"
 #include "topology/solid/adjust.h"
 #include "topology/solid/assemble.h"
 #include "topology/solid/choose.h"

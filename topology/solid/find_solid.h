@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sketches/solid.h"
+#include "sketches/graph/solid.h"
 #include "topology/solid/evidence.h"
 
 namespace sketchsplat {

@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "sketches/conic.h"
-#include "sketches/curve.h"
-#include "topology/find_planes.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
+#include "topology/faces/find_planes.h"
 #include "topology/solid/surface.h"
 
 namespace sketchsplat {

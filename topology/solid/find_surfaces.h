@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sketches/sketch.h"
-#include "sketches/solid.h"
+#include "sketches/graph/sketch.h"
+#include "sketches/graph/solid.h"
 
 namespace sketchsplat {
 

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sketches/curve.h"
-#include "sketches/solid.h"
+#include "sketches/curve/curve.h"
+#include "sketches/graph/solid.h"
 
 namespace sketchsplat {
 

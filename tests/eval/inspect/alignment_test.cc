@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "tests/eval/inspect/plate.h"
 
 namespace sketchsplat {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "datasets/errors.h"
+#include "datasets/types/errors.h"
 #include "eval/inspect/inspection_files.h"
 #include "eval/inspect/lot.h"
 #include "tests/eval/inspect/plate.h"

@@ -5,9 +5,9 @@
 #include <random>
 
 #include "eval/inspect/nominal.h"
-#include "sketches/covariance.h"
-#include "sketches/similarity.h"
-#include "sketches/sketch.h"
+#include "sketches/graph/sketch.h"
+#include "sketches/solve/covariance.h"
+#include "sketches/solve/similarity.h"
 
 namespace sketchsplat::test {
 

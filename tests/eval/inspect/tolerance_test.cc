@@ -8,9 +8,9 @@
 
 #include "eval/inspect/edge_check.h"
 #include "eval/inspect/nominal.h"
-#include "sketches/closest.h"
-#include "sketches/covariance.h"
-#include "sketches/curve.h"
+#include "sketches/curve/closest.h"
+#include "sketches/curve/curve.h"
+#include "sketches/solve/covariance.h"
 #include "tests/sketches/five_kinds.h"
 
 namespace sketchsplat {

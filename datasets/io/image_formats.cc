@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// Plug-in, loaded by image_plugin.cc when a file is no PNG: OpenImageIO brings some 260 shared
+// objects and 0.2 s of start-up, which a run over PNG images need not pay.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "datasets/io/image_planes.h"
+
+namespace sketchsplat {
+namespace {
+
+/// Channels to read, in the order of Planes: colours (one or three), then alpha if there is one.
+std::vector<int> channels_to_read(const OIIO::ImageSpec& spec) {
+  std::vector<int> colours;
+  for (int c = 0; c < spec.nchannels; ++c) {
+    if (c != spec.alpha_channel && c != spec.z_channel) colours.push_back(c);
+  }
+  colours.resize(std::min<size_t>(colours.size(), colours.size() < 3 ? 1 : 3));
+  if (spec.alpha_channel >= 0 && !colours.empty()) colours.push_back(spec.alpha_channel);
+  return colours;
+}
+
+/// Whether the colours can be premultiplied: none is above alpha by more than rounding to 8 bits.
+bool can_be_premultiplied(const Planes& planes) {
+  const std::vector<float>& alpha = planes.plane[planes.channels - 1];
+  for (int c = 0; c + 1 < planes.channels; ++c) {
+    for (size_t i = 0; i < alpha.size(); ++i) {
+      if (planes.plane[c][i] > alpha[i] + 1.0f / 255.0f) return false;
+    }
+  }
+  return true;
+}
+
+void divide_by_alpha(Planes* planes) {
+  const std::vector<float>& alpha = planes->plane[planes->channels - 1];
+  for (int c = 0; c + 1 < planes->channels; ++c) {
+    std::vector<float>& colour = planes->plane[c];
+    for (size_t i = 0; i < colour.size(); ++i) {
+      if (alpha[i] > 0) colour[i] /= alpha[i];
+    }
+  }
+}
+
+/// Whether so many pixels may be read: before memory is taken for what a few bytes only claim. No
+/// format packs more than some thousand bytes into one.
+bool is_believable(const OIIO::ImageSpec& spec, const char* path, std::string* found) {
+  const std::uint64_t bytes = OIIO::Filesystem::file_size(path);
+  const bool too_many = spec.width > 0 && spec.height > kMostPixels / spec.width;
+  const bool too_deep = spec.nchannels < 1 || spec.nchannels > 64;
+  if (!too_many && !too_deep && spec.image_bytes() / 20000 <= bytes) return true;
+  *found = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels of " +
+           std::to_string(spec.nchannels) + " numbers in " + std::to_string(bytes) + " bytes";
+  return false;
+}
+
+bool read_planes(const char* path, bool header_only, Planes* planes, std::string* found) {
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &config);
+  if (!input) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  const OIIO::ImageSpec spec = input->spec();
+  const std::vector<int> channels = channels_to_read(spec);
+  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || channels.empty()) {
+    *found = "no two-dimensional image with colours";
+    return false;
+  }
+  planes->width = spec.width;
+  planes->height = spec.height;
+  planes->channels = int(channels.size());
+  if (header_only) return true;
+  if (!is_believable(spec, path, found)) return false;
+
+  input->threads(1);
+  std::vector<float> interleaved(size_t(spec.width) * spec.height * spec.nchannels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data())) {
+    *found = input->geterror();
+    return false;
+  }
+  const size_t pixels = size_t(spec.width) * spec.height;
+  for (size_t c = 0; c < channels.size(); ++c) {
+    planes->plane[c].resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+      planes->plane[c][i] = interleaved[i * spec.nchannels + channels[c]];
+    }
+  }
+  // Formats that store premultiplied colours (TIFF, OpenEXR) ignore the wish above, and some TIFF
+  // writers do not say which of the two they mean.
+  if (spec.alpha_channel >= 0 && !spec.get_int_attribute("oiio:UnassociatedAlpha") &&
+      can_be_premultiplied(*planes)) {
+    divide_by_alpha(planes);
+  }
+  for (std::vector<float>& plane : planes->plane) {
+    for (float& v : plane) v = v > 0 ? std::min(v, 1.0f) : 0.0f;  // NaN becomes 0
+  }
+  return true;
+}
+
+bool write_exr(const char* path, const FloatPlanes& planes, bool half, std::string* found) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("openexr");
+  if (!output) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  const size_t channels = planes.plane.size(), pixels = size_t(planes.width) * planes.height;
+  OIIO::ImageSpec spec(planes.width, planes.height, int(channels),
+                       half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+  spec.channelnames = planes.names;
+  spec.attribute("compression", "zip:2");             // fast rather than small
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // same values, same bytes
+  output->threads(1);
+  std::vector<float> interleaved(pixels * channels);
+  for (size_t c = 0; c < channels; ++c)
+    for (size_t i = 0; i < pixels; ++i) interleaved[i * channels + c] = planes.plane[c][i];
+  if (output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, interleaved.data()) &&
+      output->close())
+    return true;
+  *found = output->geterror();
+  return false;
+}
+
+bool read_exr(const char* path, FloatPlanes* planes, std::string* found) {
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+  if (!input) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  input->threads(1);
+  const OIIO::ImageSpec spec = input->spec();
+  if (!is_believable(spec, path, found)) return false;
+  const size_t channels = size_t(spec.nchannels), pixels = size_t(spec.width) * spec.height;
+  std::vector<float> interleaved(pixels * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data())) {
+    *found = input->geterror();
+    return false;
+  }
+  planes->width = spec.width;
+  planes->height = spec.height;
+  planes->names = spec.channelnames;
+  planes->plane.assign(channels, std::vector<float>(pixels));
+  for (size_t c = 0; c < channels; ++c)
+    for (size_t i = 0; i < pixels; ++i) planes->plane[c][i] = interleaved[i * channels + c];
+  return true;
+}
+
+bool encode_jpeg(const unsigned char* rows, int width, int height, int quality,
+                 std::vector<unsigned char>* bytes, std::string* found) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("jpeg");
+  if (!output || !output->supports("ioproxy")) {
+    *found = "OpenImageIO writes no JPEG to memory";
+    return false;
+  }
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("Compression", "jpeg:" + std::to_string(quality));
+  OIIO::Filesystem::IOVecOutput memory(*bytes);
+  output->threads(1);
+  if (output->set_ioproxy(&memory) && output->open("memory.jpg", spec) &&
+      output->write_image(OIIO::TypeDesc::UINT8, rows) && output->close())
+    return true;
+  *found = output->geterror();
+  return false;
+}
+
+bool decode_jpeg(const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
+                 std::string* found) {
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  const std::unique_ptr<OIIO::ImageInput> input =
+      OIIO::ImageInput::open("memory.jpg", nullptr, &memory);
+  if (!input) {
+    *found = OIIO::geterror();
+    return false;
+  }
+  input->threads(1);
+  rows->resize(size_t(input->spec().width) * input->spec().height * 3);
+  if (input->spec().nchannels == 3 &&
+      input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rows->data()))
+    return true;
+  *found = input->geterror();
+  return false;
+}
+
+/// Calls a function of the above; nothing but a sentence leaves the plug-in.
+template <typename Function>
+bool guarded(std::string* found, Function function) {
+  // The callers are the threads; OpenImageIO shall not start more.
+  static const bool single = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+  (void)single;
+  try {
+    if (function()) return true;
+  } catch (const std::exception& e) {
+    *found = e.what();
+  }
+  if (found->empty()) *found = "something that cannot be decoded";
+  std::replace(found->begin(), found->end(), '\n', ' ');
+  return false;
+}
+
+const ImagePlugin kPlugin = {
+    [](const char* path, bool header_only, Planes* planes, std::string* found) {
+      return guarded(found, [&] { return read_planes(path, header_only, planes, found); });
+    },
+    [](const char* path, const FloatPlanes& planes, bool half, std::string* found) {
+      return guarded(found, [&] { return write_exr(path, planes, half, found); });
+    },
+    [](const char* path, FloatPlanes* planes, std::string* found) {
+      return guarded(found, [&] { return read_exr(path, planes, found); });
+    },
+    [](const unsigned char* rows, int width, int height, int quality,
+       std::vector<unsigned char>* bytes, std::string* found) {
+      return guarded(found,
+                     [&] { return encode_jpeg(rows, width, height, quality, bytes, found); });
+    },
+    [](const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
+       std::string* found) {
+      return guarded(found, [&] { return decode_jpeg(bytes, rows, found); });
+    },
+};
+
+}  // namespace
+}  // namespace sketchsplat
+
+extern "C" const sketchsplat::ImagePlugin* sketchsplat_image_plugin() {
+  return &sketchsplat::kPlugin;
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/io/json_file.h"
+
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <vector>
+
+#include "datasets/types/errors.h"
+#include "sketches/io/json_text.h"
+
+namespace sketchsplat {
+namespace {
+
+using nlohmann::json;
+
+/// Replaces the number-like words of Python's json module, outside of strings, by null.
+std::string without_nan(const std::string& text) {
+  std::string out;
+  bool quoted = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (quoted && text[i] == '\\' && i + 1 < text.size()) out += text[i++];
+    size_t skip = 0;
+    for (const char* word : {"NaN", "Infinity", "-Infinity"}) {
+      if (!quoted && text.compare(i, std::strlen(word), word) == 0) skip = std::strlen(word);
+    }
+    skip ? out += "null" : out += text[i];
+    if (skip) i += skip - 1;
+  }
+  return out;
+}
+
+std::string describe(const json& value) {
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+}  // namespace
+
+bool JsonValue::has(const std::string& key) const {
+  return json->is_object() && json->contains(key);
+}
+
+JsonValue JsonValue::operator[](const std::string& key) const {
+  if (!json->is_object()) complain("an object with the key \"" + key + "\"");
+  const auto found = json->find(key);
+  if (found == json->end()) {
+    throw InputError(path, "the key \"" + key + "\"" + (where.empty() ? "" : " in " + where),
+                     "none");
+  }
+  return {&*found, path, where.empty() ? key : where + "." + key};
+}
+
+std::vector<JsonValue> JsonValue::elements() const {
+  if (!json->is_array()) complain("an array");
+  std::vector<JsonValue> all;
+  for (size_t i = 0; i < json->size(); ++i) {
+    all.push_back({&(*json)[i], path, where + "[" + std::to_string(i) + "]"});
+  }
+  return all;
+}
+
+double JsonValue::number() const {
+  if (json->is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (!json->is_number()) complain("a number");
+  return json->get<double>();
+}
+
+int JsonValue::positive_integer() const {
+  const double value = number();
+  if (!(value >= 1 && value <= 1 << 20 && value == int(value))) {
+    complain("a positive whole number");
+  }
+  return int(value);
+}
+
+std::string JsonValue::text() const {
+  if (!json->is_string()) complain("a text");
+  return json->get<std::string>();
+}
+
+Eigen::MatrixXd JsonValue::matrix(int rows, int cols) const {
+  const std::string expected =
+      "a " + std::to_string(rows) + " x " + std::to_string(cols) + " matrix";
+  if (!json->is_array() || int(json->size()) < rows) complain(expected);
+  Eigen::MatrixXd m(rows, cols);
+  for (int r = 0; r < rows; ++r) {
+    const JsonValue row{&(*json)[r], path, where + "[" + std::to_string(r) + "]"};
+    if (!row.json->is_array() || int(row.json->size()) < cols) complain(expected);
+    for (int c = 0; c < cols; ++c) m(r, c) = JsonValue{&(*row.json)[c], path, row.where}.number();
+  }
+  return m;
+}
+
+void JsonValue::complain(const std::string& expected) const {
+  throw InputError(path, expected + (where.empty() ? "" : " in " + where), describe(*json));
+}
+
+json load_json(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || file.peek() == std::ifstream::traits_type::eof())
+    throw InputError(path, "a JSON file", "nothing to read");
+  const std::string text = read_whole(&file, path, kMostJsonBytes);
+  try {
+    try {
+      return parse_json_text<json>(text, path);
+    } catch (const json::parse_error&) {
+      return json::parse(without_nan(text));  // perhaps because of a NaN
+    }
+  } catch (const json::out_of_range&) {
+    throw InputError(path, "numbers below 1.8e308", "a larger one");
+  } catch (const json::parse_error& e) {
+    throw InputError(path, "a JSON file", "no JSON at byte " + std::to_string(e.byte));
+  }
+}
+
+}  // namespace sketchsplat

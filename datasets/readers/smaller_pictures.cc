@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/readers/smaller_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sketchsplat {
+
+Scene with_smaller_pictures(const Scene& scene, int least_side) {
+  Scene out = scene;
+  for (View& view : out.views) {
+    const int longer = std::max(view.camera.width, view.camera.height);
+    const int factor = least_side > 0 ? longer / least_side : 1;
+    if (factor < 2) continue;
+    const View full = view;
+    view.make_picture = [full, factor] { return read_picture(full, factor); };
+    view.mask_path.clear();  // the picture has it
+    view.camera = full.camera.shrunk(factor);
+  }
+  return out;
+}
+
+std::vector<View> at_full_size(const std::vector<View>& views, const Scene& smaller,
+                               const Scene& scene) {
+  std::vector<View> out;
+  size_t i = 0;
+  for (const View& from : views) {
+    while (i < smaller.views.size() && (smaller.views[i].name != from.name ||
+                                        smaller.views[i].image_path != from.image_path))
+      ++i;
+    View view = scene.views.at(i);
+    const int factor = int(std::lround(view.camera.fx / smaller.views[i++].camera.fx));
+    view.camera = from.camera.enlarged(factor, view.camera.width, view.camera.height);
+    view.cam_from_world = from.cam_from_world;
+    view.lens = from.lens;
+    out.push_back(std::move(view));
+  }
+  return out;
+}
+
+}  // namespace sketchsplat

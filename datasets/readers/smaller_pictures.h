@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "datasets/readers/scene.h"
+
+namespace sketchsplat {
+
+/// The scene with pictures whose longer side is at least twice `least_side` made smaller by the
+/// largest whole factor that leaves so many pixels: blocks of pixels become one where a picture is
+/// read, masks with it, and cameras are those of the smaller pictures. 0 leaves all as they are.
+Scene with_smaller_pictures(const Scene& scene, int least_side);
+
+/// Views of `smaller`, some or all in its order, with cameras that may have moved since: the same
+/// for the pictures of the scene that it was made of.
+std::vector<View> at_full_size(const std::vector<View>& views, const Scene& smaller,
+                               const Scene& scene);
+
+}  // namespace sketchsplat

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "datasets/synthetic/cad/brep.h"
+
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepGProp.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <Eigen/Geometry>
+#include <GProp_GProps.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <Poly_Triangulation.hxx>
+#include <STEPControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+#include <cmath>
+#include <fstream>
+
+#include "datasets/types/errors.h"
+#include "sketches/io/whole_file.h"
+
+namespace sketchsplat {
+
+Brep read_step(const std::string& path) {
+  std::ifstream file(path);
+  check_length(&file, path);
+  std::string magic(13, '\0');
+  if (!file.read(&magic[0], 13))
+    throw InputError(path, "a STEP file", file.is_open() ? "too few bytes" : "no readable file");
+  if (magic != "ISO-10303-21;")
+    throw InputError(path, "a STEP file (ISO-10303-21)", "another kind");
+
+  // The reader reports to the terminal; ours is the caller's.
+  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+  TopoDS_Shape shape;
+  try {
+    STEPControl_Reader reader;
+    if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
+      throw InputError(path, "a STEP file", "entities that cannot be read");
+    reader.TransferRoots();
+    shape = reader.OneShape();
+  } catch (const Standard_Failure& failure) {
+    throw InputError(path, "a STEP file", failure.GetMessageString());
+  }
+  if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More())
+    throw InputError(path, "a shape with faces", "none");
+  return {std::make_shared<const TopoDS_Shape>(shape)};
+}
+
+UnitFrame unit_frame(const Brep& brep, const std::string& name) {
+  Bnd_Box box;
+  BRepBndLib::AddOptimal(*brep.shape, box, /*useTriangulation=*/false, /*useShapeTolerance=*/false);
+  if (box.IsVoid() || box.IsOpen())
+    throw InputError(name, "a bounded shape", box.IsVoid() ? "nothing" : "an infinite one");
+  Eigen::Vector3d low, high;
+  box.Get(low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  // Bnd_Box answers with its gap added on every side; AddOptimal leaves one of its own tolerance.
+  low.array() += box.GetGap();
+  high.array() -= box.GetGap();
+  const double longest = (high - low).maxCoeff();
+  if (!(longest > 0) || !std::isfinite(longest))
+    throw InputError(name, "a shape with an extent", std::to_string(longest));
+  return {(low + high) / 2, 1.0 / longest, high - low};
+}
+
+namespace {
+
+Eigen::Vector3d to_eigen(const gp_XYZ& v) { return {v.X(), v.Y(), v.Z()}; }
+
+// Normal of the surface at (u, v), zero where it has none (apex of a cone, pole of a sphere).
+Eigen::Vector3d surface_normal(const BRepAdaptor_Surface& surface, const gp_Pnt2d& uv) {
+  gp_Pnt point;
+  gp_Vec du, dv;
+  surface.D1(uv.X(), uv.Y(), point, du, dv);
+  const Eigen::Vector3d a = to_eigen(du.XYZ()), b = to_eigen(dv.XYZ()), n = a.cross(b);
+  if (!(n.norm() > 1e-9 * a.norm() * b.norm())) return Eigen::Vector3d::Zero();
+  return n.normalized();
+}
+
+// False if the face has no triangles.
+bool add_face(const TopoDS_Face& face, int index, const UnitFrame& frame, SurfaceMesh* mesh) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangles = BRep_Tool::Triangulation(face, location);
+  if (triangles.IsNull() || triangles->NbTriangles() == 0) return false;
+  const unsigned base = unsigned(mesh->points.size());
+  const int n = triangles->NbNodes();
+  std::vector<Eigen::Vector3d> point(n), facet(n, Eigen::Vector3d::Zero());
+  for (int i = 0; i < n; ++i)
+    point[i] =
+        frame * to_eigen(triangles->Node(i + 1).Transformed(location.Transformation()).XYZ());
+  for (int t = 1; t <= triangles->NbTriangles(); ++t) {
+    int a, b, c;
+    triangles->Triangle(t).Get(a, b, c);
+    if (face.Orientation() == TopAbs_REVERSED) std::swap(b, c);
+    const Eigen::Vector3d area = (point[b - 1] - point[a - 1]).cross(point[c - 1] - point[a - 1]);
+    for (int k : {a, b, c}) facet[k - 1] += area;
+    mesh->corners.push_back({base + a - 1, base + b - 1, base + c - 1});
+    mesh->face.push_back(index);
+  }
+  const BRepAdaptor_Surface surface(face, /*Restriction=*/false);
+  for (int i = 0; i < n; ++i) {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    if (triangles->HasUVNodes()) normal = surface_normal(surface, triangles->UVNode(i + 1));
+    if (normal.isZero()) normal = facet[i].normalized();
+    if (normal.dot(facet[i]) < 0) normal = -normal;
+    mesh->points.push_back(point[i].cast<float>());
+    mesh->normals.push_back(normal.cast<float>());
+  }
+  return true;
+}
+
+double area_of(const TopoDS_Face& face) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face, properties);
+  return std::abs(properties.Mass());
+}
+
+const char* type_of(const TopoDS_Face& face) {
+  switch (BRepAdaptor_Surface(face, /*Restriction=*/false).GetType()) {
+    case GeomAbs_Plane:
+      return "Plane";
+    case GeomAbs_Cylinder:
+      return "Cylinder";
+    case GeomAbs_Cone:
+      return "Cone";
+    case GeomAbs_Sphere:
+      return "Sphere";
+    case GeomAbs_Torus:
+      return "Torus";
+    case GeomAbs_BezierSurface:
+    case GeomAbs_BSplineSurface:
+      return "BSpline";
+    case GeomAbs_SurfaceOfRevolution:
+      return "Revolution";
+    case GeomAbs_SurfaceOfExtrusion:
+      return "Extrusion";
+    default:
+      return "Other";
+  }
+}
+
+}  // namespace
+
+SurfaceMesh tessellate(const Brep& brep, const UnitFrame& frame, double deflection,
+                       const std::string& name) {
+  constexpr double kAngle =
+      0.25;                       // [rad] keeps small fillets round; the deflection rules elsewhere
+  BRepTools::Clean(*brep.shape);  // what an earlier call left
+  BRepMesh_IncrementalMesh(*brep.shape, deflection / frame.scale, /*isRelative=*/false, kAngle,
+                           /*isInParallel=*/false);
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(*brep.shape, TopAbs_FACE, faces);
+  SurfaceMesh mesh;
+  int bare = 0;
+  // Slivers that no picture shows may stay without triangles.
+  const double sliver = 1e-8 / (frame.scale * frame.scale);
+  for (int f = 1; f <= faces.Extent(); ++f) {
+    const TopoDS_Face face = TopoDS::Face(faces(f));
+    mesh.types.push_back(type_of(face));
+    if (!add_face(face, f - 1, frame, &mesh) && area_of(face) > sliver) ++bare;
+  }
+  if (bare > 0)
+    throw InputError(
+        name, "faces that can be triangulated",
+        std::to_string(bare) + " of " + std::to_string(faces.Extent()) + " that cannot");
+  return mesh;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+// Canny, J.: A computational approach to edge detection, PAMI 1986 (smoothing, hysteresis);
+// Immerkaer, J.: Fast noise variance estimation, CVIU 1996 (the mask; here with a median).
+#include "edges/image/detect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "datasets/types/median.h"
+#include "edges/image/chain.h"
+#include "edges/image/gradient.h"
+#include "edges/image/meaningful.h"
+
+namespace sketchsplat {
+namespace {
+
+// The part of the picture that can hold edges, as one channel.
+struct Composite {
+  cv::Mat1f value;
+  cv::Mat1b inside;  ///< fully opaque
+  int x0 = 0, y0 = 0;
+};
+
+cv::Rect opaque_box(const Image<float>& alpha) {
+  int x0 = alpha.width, x1 = -1, y0 = alpha.height, y1 = -1;
+  for (int y = 0; y < alpha.height; ++y) {
+    const float* row = alpha.row(y);
+    for (int x = 0; x < alpha.width; ++x)
+      if (row[x] > 0) {
+        x0 = std::min(x0, x), x1 = std::max(x1, x);
+        y0 = std::min(y0, y), y1 = std::max(y1, y);
+      }
+  }
+  return x1 < 0 ? cv::Rect() : cv::Rect(x0, y0, x1 - x0 + 1, y1 - y0 + 1);
+}
+
+// alpha * (grey + pedestal): the outline is where alpha says, whatever colour hides outside it.
+Composite composite(const Picture& picture, const DetectOptions& options) {
+  Composite c;
+  const int w = picture.width(), h = picture.height();
+  cv::Rect box(0, 0, w, h);
+  const bool masked = !picture.alpha.empty();
+  const int border = int(std::ceil(4 * options.sigma_px)) + 2;
+  if (masked) {
+    box = opaque_box(picture.alpha);
+    if (box.empty()) return c;
+    box = cv::Rect(box.x - border, box.y - border, box.width + 2 * border, box.height + 2 * border);
+    box &= cv::Rect(0, 0, w, h);  // an object that leaves the image does not end at its frame
+  }
+  c.x0 = box.x, c.y0 = box.y;
+  c.value.create(box.height, box.width);
+  c.inside.create(box.height, box.width);
+  for (int v = 0; v < box.height; ++v)
+    for (int u = 0; u < box.width; ++u) {
+      const int x = u + box.x, y = v + box.y;
+      const float a = masked ? picture.alpha.at(x, y) : 1.f;
+      const float grey = 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
+                         0.114f * picture.blue.at(x, y);
+      c.value(v, u) = masked ? a * (grey + float(options.pedestal)) : grey;
+      c.inside(v, u) = a >= 1.f;
+    }
+  return c;
+}
+
+float measure_noise(const Composite& c) {
+  std::vector<float> r;
+  r.reserve(size_t(c.value.rows) * c.value.cols / 2);
+  for (int y = 1; y + 1 < c.value.rows; y += 1)
+    for (int x = 1 + y % 2; x + 1 < c.value.cols; x += 2) {
+      const float *a = c.value[y - 1] + x, *b = c.value[y] + x, *d = c.value[y + 1] + x;
+      const uchar *ia = c.inside[y - 1] + x, *id = c.inside[y + 1] + x;
+      if (!(ia[-1] && ia[1] && id[-1] && id[1])) continue;
+      r.push_back(std::abs(a[-1] - 2 * a[0] + a[1] - 2 * (b[-1] - 2 * b[0] + b[1]) + d[-1] -
+                           2 * d[0] + d[1]));
+    }
+  if (r.size() < 16) return 0;
+  return median(std::move(r)) / (0.6745f * 6.f);
+}
+
+struct Gradient {
+  cv::Mat1f x, y, magnitude;
+  cv::Mat1f log;  // of the magnitude: across a blurred step it is a parabola, exactly
+};
+
+Gradient gradient_of(const cv::Mat1f& value, double sigma) {
+  Gradient g;
+  gaussian_gradient(value, sigma, &g.x, &g.y);
+  cv::magnitude(g.x, g.y, g.magnitude);
+  cv::log(cv::max(g.magnitude, 1e-5f), g.log);
+  return g;
+}
+
+// Maximum along the gradient of the quadratic through the 3 x 3 log magnitudes.
+bool localise(const Gradient& g, int x, int y, Edgel* e) {
+  const float *a = g.log[y - 1] + x, *b = g.log[y] + x, *c = g.log[y + 1] + x;
+  const float m = g.magnitude(y, x);
+  const float nx = g.x(y, x) / m, ny = g.y(y, x) / m;
+  const float lx = 0.5f * (b[1] - b[-1]), ly = 0.5f * (c[0] - a[0]);
+  const float lxx = b[1] - 2 * b[0] + b[-1], lyy = c[0] - 2 * b[0] + a[0];
+  const float lxy = 0.25f * (c[1] - c[-1] - a[1] + a[-1]);
+  const float slope = lx * nx + ly * ny;
+  const float bend = lxx * nx * nx + 2 * lxy * nx * ny + lyy * ny * ny;
+  if (!(bend < -0.02f)) return false;  // flatter than a blur of 7 px
+  const float shift = -slope / bend;
+  const float dx = shift * nx, dy = shift * ny;
+  if (std::abs(dx) > 0.6f || std::abs(dy) > 0.6f) return false;
+  e->x = x + dx, e->y = y + dy;
+  e->nx = nx, e->ny = ny;
+  e->strength = m * std::exp(0.5f * slope * shift);
+  e->width = 1 / std::sqrt(-bend);
+  return true;
+}
+
+Candidates find_candidates(const Gradient& g, float low) {
+  Candidates c;
+  c.at = Image<int>(g.magnitude.cols, g.magnitude.rows, -1);
+  for (int y = 1; y + 1 < g.magnitude.rows; ++y)
+    for (int x = 1; x + 1 < g.magnitude.cols; ++x) {
+      Edgel e;
+      if (g.magnitude(y, x) < low || !localise(g, x, y, &e)) continue;
+      c.at.at(x, y) = int(c.edgels.size());
+      c.edgels.push_back(e);
+    }
+  return c;
+}
+
+void mark_outline(const Image<float>& alpha, EdgelMap* map) {
+  map->mask = Image<uint8_t>(alpha.width, alpha.height);
+  for (size_t i = 0; i < alpha.data.size(); ++i) map->mask.data[i] = alpha.data[i] >= 0.5f;
+  for (Edgel& e : map->edgels) {
+    const int x = int(std::lround(e.x - 1.5f * e.nx)), y = int(std::lround(e.y - 1.5f * e.ny));
+    const bool in = x >= 0 && y >= 0 && x < alpha.width && y < alpha.height;
+    e.outline = !in || !map->mask.at(x, y);  // the dark side is no object
+  }
+}
+
+}  // namespace
+
+EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
+  EdgelMap map;
+  map.width = picture.width(), map.height = picture.height();
+  const Composite c = composite(picture, options);
+  if (c.value.rows < 3 || c.value.cols < 3) return map;
+  map.noise = measure_noise(c);
+  const Gradient g = gradient_of(c.value, options.sigma_px);
+  // White noise of variance 1 has gradient variance 1 / (8 pi sigma^4) by component.
+  const double unit = 1.0 / (std::sqrt(8 * M_PI) * options.sigma_px * options.sigma_px);
+  const float low = float(std::max(options.low_floor / 255, options.low_sigma * unit * map.noise));
+  const float high =
+      float(std::max(options.high_floor / 255, options.high_sigma * unit * map.noise));
+  chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
+  keep_meaningful(g.magnitude, options.meaning, &map);
+  for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
+  if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);
+  build_lookup(&map, options.reach_px);
+  return map;
+}
+
+std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep, int min_chain,
+                             EdgelMap* to) {
+  std::vector<int> kept;
+  if (to->chain.empty()) to->chain.push_back(int(to->edgels.size()));
+  for (int c = 0; c < from.num_chains(); ++c)
+    for (int begin = from.chain[c], end; begin < from.chain[c + 1]; begin = end + 1) {
+      for (end = begin; end < from.chain[c + 1] && keep[end];) ++end;
+      if (end == begin || end - begin < min_chain) continue;
+      for (int k = begin; k < end; ++k) kept.push_back(k), to->edgels.push_back(from.edgels[k]);
+      to->chain.push_back(int(to->edgels.size()));
+      if (!from.meaning.empty()) to->meaning.push_back(from.meaning[c]);
+    }
+  return kept;
+}
+
+namespace {
+
+// Chessboard distance to the nearest pixel with an edgel, negative, where there is none: forward
+// and backward (Rosenfeld, Pfaltz: Sequential operations in digital picture processing, JACM 1966).
+void fill_distances(EdgelMap* map) {
+  const int w = map->window_width, h = map->window_height;
+  const auto far = [&](int x, int y) {  // minus the distance; 0 at an edgel
+    return x < 0 || y < 0 || x >= w || y >= h ? -(w + h)
+                                              : std::min(0, map->nearest[size_t(y) * w + x]);
+  };
+  for (int way = 1; way >= -1; way -= 2)
+    for (int i = 0; i < h; ++i)
+      for (int j = 0; j < w; ++j) {
+        const int y = way > 0 ? i : h - 1 - i, x = way > 0 ? j : w - 1 - j;
+        int& here = map->nearest[size_t(y) * w + x];
+        if (here >= 0) continue;
+        const int before = std::max({far(x - way, y), far(x - 1, y - way), far(x, y - way),
+                                     far(x + 1, y - way)});
+        here = way > 0 ? before - 1 : std::max(here, before - 1);
+      }
+}
+
+}  // namespace
+
+void build_lookup(EdgelMap* map, double reach_px) {
+  map->nearest.clear();
+  map->window_width = map->window_height = 0;
+  if (map->edgels.empty()) return;
+  float x_min = 1e9f, y_min = 1e9f, x_max = -1e9f, y_max = -1e9f;
+  for (const Edgel& e : map->edgels) {
+    x_min = std::min(x_min, e.x), x_max = std::max(x_max, e.x);
+    y_min = std::min(y_min, e.y), y_max = std::max(y_max, e.y);
+  }
+  const int r = int(std::ceil(reach_px));
+  map->x0 = int(std::floor(x_min)) - r, map->y0 = int(std::floor(y_min)) - r;
+  map->window_width = int(std::ceil(x_max)) + r + 1 - map->x0;
+  map->window_height = int(std::ceil(y_max)) + r + 1 - map->y0;
+  map->nearest.assign(size_t(map->window_width) * map->window_height, -1);
+  std::vector<float> best(map->nearest.size(), float(reach_px * reach_px));
+  for (int i = 0; i < int(map->edgels.size()); ++i) {
+    const Edgel& e = map->edgels[i];
+    const int cx = int(std::lround(e.x)), cy = int(std::lround(e.y));
+    for (int y = cy - r; y <= cy + r; ++y)
+      for (int x = cx - r; x <= cx + r; ++x) {
+        const int u = x - map->x0, v = y - map->y0;
+        if (u < 0 || v < 0 || u >= map->window_width || v >= map->window_height) continue;
+        const float d = (x - e.x) * (x - e.x) + (y - e.y) * (y - e.y);
+        const size_t k = size_t(v) * map->window_width + u;
+        if (d < best[k]) best[k] = d, map->nearest[k] = i;
+      }
+  }
+  fill_distances(map);
+}
+
+Image<float> draw_edge_map(const EdgelMap& map, double sigma_px) {
+  Image<float> out(map.width, map.height);
+  const int r = int(std::ceil(3 * sigma_px));
+  for (const Edgel& e : map.edgels) {
+    const int cx = int(std::lround(e.x)), cy = int(std::lround(e.y));
+    for (int y = std::max(0, cy - r); y <= std::min(map.height - 1, cy + r); ++y)
+      for (int x = std::max(0, cx - r); x <= std::min(map.width - 1, cx + r); ++x) {
+        const float across = (x - e.x) * e.nx + (y - e.y) * e.ny;
+        const float along = -(x - e.x) * e.ny + (y - e.y) * e.nx;
+        if (std::abs(along) > 1.f) continue;  // its own piece of the ridge, not a blob
+        out.at(x, y) =
+            std::max(out.at(x, y), float(std::exp(-0.5 * across * across / (sigma_px * sigma_px))));
+      }
+  }
+  return out;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "edges/image/detect.h"
+
+namespace sketchsplat {
+
+/// Drops what texture and noise make as well: a-contrario validation of chains (Desolneux, Moisan,
+/// Morel: Edge detection by Helmholtz principle, JMIV 2001), by contrast and by smoothness. By
+/// contrast: a place on an edge is stronger than the pixels around (their share that is as strong
+/// is the chance of it). By smoothness: an edge keeps its curvature from step to step, chains in
+/// texture turn at random. Of every chain the pieces with the most evidence are kept; `meaning` of
+/// the map is filled in. `magnitude`: of the gradient, one value per pixel of what the edgels'
+/// coordinates refer to.
+void keep_meaningful(const cv::Mat1f& magnitude, const MeaningOptions& options, EdgelMap* map);
+
+}  // namespace sketchsplat

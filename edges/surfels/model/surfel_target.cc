@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "edges/surfels/model/surfel_target.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace sketchsplat {
+namespace {
+
+constexpr int kWindow = 6;  // [px] beyond what is looked at, for windows about its pixels
+
+TrainingView part(const TrainingView& view, const cv::Rect& box) {
+  TrainingView out;
+  out.view = view.view;
+  out.view.camera = view.view.camera.cut(box.x, box.y, box.width, box.height);
+  for (int c = 0; c < 3; ++c)
+    out.color[c] = cut(view.color[c], box.x, box.y, box.width, box.height);
+  out.alpha = cut(view.alpha, box.x, box.y, box.width, box.height);
+  return out;
+}
+
+SurfelTarget make_target(const TrainingView& full, int side, const Eigen::Vector3d& middle) {
+  TrainingView small = shrink(full, side);
+  const int w = small.alpha.width, h = small.alpha.height, margin = std::max(4, side / 25);
+  const cv::Mat1f alpha(h, w, small.alpha.data.data());
+  cv::Mat1b near;
+  cv::dilate(alpha > 0.02f, near, cv::Mat::ones(2 * margin + 1, 2 * margin + 1, CV_8U));
+  cv::Rect box = cv::boundingRect(near);
+  box -= cv::Point(kWindow, kWindow), box += cv::Size(2 * kWindow, 2 * kWindow);
+  box &= cv::Rect(0, 0, w, h);
+  SurfelTarget t;
+  t.view = part(small, box);
+  const Camera& camera = t.view.view.camera;
+  t.mask = Image<std::uint8_t>(box.width, box.height);
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x) t.mask.at(x, y) = near(box.y + y, box.x + x) != 0;
+  t.footprint = std::max(1e-300, (t.view.view.cam_from_world * middle).z() / camera.fx);
+  return t;
+}
+
+}  // namespace
+
+std::vector<SurfelTarget> make_targets(const std::vector<TrainingView>& views, int side,
+                                       const Eigen::Vector3d& middle) {
+  std::vector<SurfelTarget> targets(views.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < int(views.size()); ++v) targets[v] = make_target(views[v], side, middle);
+  return targets;
+}
+
+}  // namespace sketchsplat

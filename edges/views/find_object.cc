@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+#include "edges/views/find_object.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Plane = Eigen::Hyperplane<double, 3>;
+
+constexpr int kTrials = 3000;       // planes through three points
+constexpr int kMostPoints = 3000;   // that judge them
+constexpr double kSameDirection = 0.96;  // cosine
+constexpr double kNear = 0.25;  // of what the cameras look at: how far from its middle things count
+constexpr double kBelow = 4;        // points that lie on a plane make up for one far below it
+constexpr double kMostBelow = 0.1;  // of the points, far below a table
+
+struct Judged {
+  double score = 0;
+  int on = 0, below = 0;
+};
+
+Judged judge(const Plane& plane, const std::vector<Vector3d>& points, double tolerance) {
+  Judged j;
+  for (const Vector3d& p : points) {
+    const double d = plane.signedDistance(p);
+    j.on += std::abs(d) < tolerance;
+    j.below += d < -3 * tolerance;
+  }
+  j.score = j.on - kBelow * j.below;
+  return j;
+}
+
+// Least squares through the points near a plane.
+Plane refined(const Plane& plane, const std::vector<Vector3d>& points, double tolerance) {
+  Vector3d mean = Vector3d::Zero();
+  int n = 0;
+  for (const Vector3d& p : points)
+    if (plane.absDistance(p) < tolerance) mean += p, ++n;
+  mean /= std::max(1, n);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : points)
+    if (plane.absDistance(p) < tolerance) spread += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(spread);
+  Vector3d normal = es.eigenvectors().col(0);
+  if (normal.dot(plane.normal()) < 0) normal = -normal;
+  return Plane(normal, mean);
+}
+
+std::vector<Vector3d> every_nth(const std::vector<Vector3d>& points) {
+  std::vector<Vector3d> out;
+  const double step = std::max(1.0, double(points.size()) / kMostPoints);
+  for (double i = 0; i < double(points.size()); i += step) out.push_back(points[size_t(i)]);
+  return out;
+}
+
+std::optional<Plane> find_table(const std::vector<Vector3d>& all,
+                                const std::vector<Vector3d>& cameras, double footprint,
+                                const RegionOptions& options) {
+  const std::vector<Vector3d> points = every_nth(all);
+  const int n = int(points.size());
+  if (n < 20) return std::nullopt;
+  const double tolerance = options.table_px * footprint;
+  std::mt19937 rng(1);
+  Plane best;
+  Judged most;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Vector3d &a = points[rng() % n], &b = points[rng() % n], &c = points[rng() % n];
+    Vector3d normal = (b - a).cross(c - a);
+    if (!(normal.norm() > 1e-3 * (b - a).norm() * (c - a).norm())) continue;
+    normal.normalize();
+    if (normal.dot(cameras.front() - a) < 0) normal = -normal;
+    const Plane plane(normal, a);
+    if (std::any_of(cameras.begin(), cameras.end(),
+                    [&](const Vector3d& x) { return plane.signedDistance(x) <= 0; }))
+      continue;
+    const Judged j = judge(plane, points, tolerance);
+    if (j.score > most.score) most = j, best = plane;
+  }
+  if (!(most.score > 0)) return std::nullopt;
+  for (int k = 0; k < 3; ++k) best = refined(best, points, tolerance);
+  most = judge(best, points, tolerance);
+  if (most.on < options.least_share * n || most.below > kMostBelow * n) return std::nullopt;
+  return best;
+}
+
+// Groups of places in a plane: what lies in cells that touch is one. Group of each place.
+std::vector<int> group_of(const std::vector<Vector2d>& places, double cell, int* count) {
+  std::map<std::pair<int, int>, int> group;  // of a cell
+  const auto cell_of = [cell](const Vector2d& p) {
+    return std::pair(int(std::floor(p.x() / cell)), int(std::floor(p.y() / cell)));
+  };
+  for (const Vector2d& p : places) group[cell_of(p)] = -1;
+  *count = 0;
+  for (auto& [start, g] : group) {
+    if (g >= 0) continue;
+    g = (*count)++;
+    std::vector<std::pair<int, int>> open = {start};
+    while (!open.empty()) {
+      const auto [x, y] = open.back();
+      open.pop_back();
+      for (int dx = -1; dx <= 1; ++dx)
+        for (int dy = -1; dy <= 1; ++dy) {
+          const auto next = group.find({x + dx, y + dy});
+          if (next == group.end() || next->second >= 0) continue;
+          next->second = group[start];
+          open.push_back(next->first);
+        }
+    }
+  }
+  std::vector<int> out;
+  for (const Vector2d& p : places) out.push_back(group[cell_of(p)]);
+  return out;
+}
+
+// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a
+// gap.
+std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
+                            int start, double footprint, const RegionOptions& options) {
+  std::vector<char> own(1 + *std::max_element(group.begin(), group.end()), 0);
+  own[start] = 1;
+  std::vector<Vector2d> taken;
+  for (bool more = true; more;) {
+    more = false;
+    taken.clear();
+    Eigen::AlignedBox2d box;
+    for (size_t i = 0; i < places.size(); ++i)
+      if (own[group[i]]) taken.push_back(places[i]), box.extend(places[i]);
+    const double gap = std::max(options.gap_px * footprint, options.gap * box.sizes().norm());
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (own[group[i]] || box.exteriorDistance(places[i]) > gap) continue;
+      more |= own[group[i]] = std::any_of(taken.begin(), taken.end(), [&](const Vector2d& p) {
+        return (p - places[i]).squaredNorm() < gap * gap;
+      });
+    }
+  }
+  return taken;
+}
+
+double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
+  return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
+}
+
+// Counter-clockwise.
+std::vector<Vector2d> convex_hull(const std::vector<Vector2d>& places) {
+  if (places.empty()) return {};
+  std::vector<cv::Point2f> points;  // about the first: floats are fine enough then
+  for (const Vector2d& p : places)
+    points.emplace_back(float(p.x() - places[0].x()), float(p.y() - places[0].y()));
+  std::vector<int> hull;
+  cv::convexHull(points, hull, false, false);
+  std::vector<Vector2d> out;
+  for (const int k : hull) out.push_back(places[k]);
+  return out;
+}
+
+// Corners of squares around all places: the hull of them is wider by the margin.
+std::vector<Vector2d> widened(const std::vector<Vector2d>& places, double margin) {
+  std::vector<Vector2d> out;
+  for (const Vector2d& p : places)
+    for (int k = 0; k < 4; ++k)
+      out.push_back(p + margin * Vector2d(k & 1 ? 1 : -1, k & 2 ? 1 : -1));
+  return out;
+}
+
+bool is_inside(const std::vector<Vector2d>& polygon, const Vector2d& p) {
+  for (size_t i = 0; i < polygon.size(); ++i)
+    if (cross(polygon[i], polygon[(i + 1) % polygon.size()], p) < 0) return false;
+  return !polygon.empty();
+}
+
+// Positions of the points that others on the same line bear out.
+std::vector<Vector3d> borne_out(const std::vector<EdgePoint>& points, double footprint,
+                                const RegionOptions& options) {
+  const double reach = options.line_px * footprint, aside = options.table_px * footprint;
+  using Cell = std::array<int, 3>;
+  const auto cell_of = [reach](const Vector3d& x) {
+    return Cell{int(std::floor(x.x() / reach)), int(std::floor(x.y() / reach)),
+                int(std::floor(x.z() / reach))};
+  };
+  std::map<Cell, std::vector<int>> in_cell;
+  for (size_t i = 0; i < points.size(); ++i) in_cell[cell_of(points[i].position)].push_back(int(i));
+  const auto bears_out = [&](const EdgePoint& p, const EdgePoint& q) {
+    const Vector3d d = q.position - p.position;
+    return d.norm() < reach && d.cross(p.tangent).norm() < aside &&
+           std::abs(p.tangent.dot(q.tangent)) > kSameDirection;
+  };
+  std::vector<Vector3d> out;
+  for (const EdgePoint& p : points) {
+    const Cell c = cell_of(p.position);
+    int others = -1;  // it meets itself
+    double views = 0;
+    for (int k = 0; k < 27; ++k) {
+      const auto near = in_cell.find({c[0] + k / 9 - 1, c[1] + k / 3 % 3 - 1, c[2] + k % 3 - 1});
+      if (near == in_cell.end()) continue;
+      for (const int j : near->second)
+        if (bears_out(p, points[j])) ++others, views += points[j].views - options.min_views;
+    }
+    if (others > 0 && views >= options.line_views) out.push_back(p.position);
+  }
+  return out;
+}
+
+Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points, double margin) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) {
+    box.extend(Vector3d(p - Vector3d::Constant(margin)));
+    box.extend(Vector3d(p + Vector3d::Constant(margin)));
+  }
+  return box;
+}
+
+}  // namespace
+
+bool ObjectRegion::contains(const Vector3d& point) const {
+  if (box.isEmpty()) return true;
+  if (!box.contains(point)) return false;
+  if (!table) return true;
+  const bool on_table = table->signedDistance(point) < above;
+  return is_inside(on_table ? outline_on_table : outline, frame * point);
+}
+
+ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Vector3d>& cameras,
+                         const Vector3d& middle, double reach, double footprint,
+                         const RegionOptions& options) {
+  ObjectRegion region;
+  const double margin = options.margin_px * footprint;
+  const std::vector<Vector3d> points = borne_out(all, footprint, options);
+  if (points.empty() || cameras.empty()) return region;
+  // Without a table nothing tells things from the object: all points may be of it.
+  std::vector<Vector3d> any;
+  for (const EdgePoint& p : all) any.push_back(p.position);
+  region.box = box_of(any, options.reach_px * footprint);
+  const std::optional<Plane> table = find_table(points, cameras, footprint, options);
+  if (!table) return region;
+  const Vector3d x = table->normal().unitOrthogonal();
+  region.frame << x.transpose(), table->normal().cross(x).transpose();
+
+  std::vector<Vector2d> places;
+  for (const Vector3d& p : points)
+    if (table->signedDistance(p) > options.above_px * footprint)
+      places.push_back(region.frame * p);
+  int count = 0;
+  const std::vector<int> group = group_of(places, 0.5 * options.gap_px * footprint, &count);
+  std::vector<double> weight(count);
+  const double near = kNear * reach;
+  for (size_t i = 0; i < places.size(); ++i)
+    weight[group[i]] +=
+        std::exp(-0.5 * (places[i] - region.frame * middle).squaredNorm() / (near * near));
+  if (count == 0) return region;
+  const int best = int(std::max_element(weight.begin(), weight.end()) - weight.begin());
+  const std::vector<Vector2d> own = grown(places, group, best, footprint, options);
+  region.table = table;
+  region.above = options.above_px * footprint;
+  region.outline = convex_hull(widened(own, options.reach_px * footprint));
+  region.outline_on_table = convex_hull(widened(own, margin));
+  std::vector<Vector3d> inside;
+  for (const Vector3d& p : points)
+    if (table->signedDistance(p) > region.above && is_inside(region.outline, region.frame * p)) {
+      inside.push_back(p);
+      inside.push_back(table->projection(p));  // it stands there, whether that is seen or not
+    }
+  region.box = box_of(inside, options.reach_px * footprint);
+  return region;
+}
+
+}  // namespace sketchsplat

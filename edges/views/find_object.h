@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "edges/views/lift.h"
+#include "edges/views/object_region.h"
+
+namespace sketchsplat {
+
+struct RegionOptions {
+  int min_views = 4;      ///< that any point has; those beyond them count
+  double line_px = 30;    ///< [px] along its tangent, within which others bear a point out
+  double line_views = 6;  ///< views beyond min_views that these and the point have together
+  double table_px = 2;    ///< [px] of points on the table
+  double above_px = 6;    ///< [px] over the table, from where on a point is no print on it
+  double gap_px = 24;     ///< [px] seen from above, that parts the object from other things,
+  double gap = 0.12;      ///< in diameters of the object, if that is more: large things fall apart
+  double margin_px = 4;   ///< [px] around the object's points, on the table
+  double reach_px = 20;   ///< [px] the same above it, where nothing else is near
+  double least_share = 0.1;  ///< of the points that lie on a plane for it to be a table
+};
+
+/// Finds the object that the cameras look at among points on edges. The table is the plane with the
+/// most points over which all cameras and nearly all points are; what stands on it falls apart,
+/// seen from above, into groups, of which the object is the one with the most points near `middle`,
+/// where the optical axes meet. Only points count that have others along their tangents: an object
+/// of nothing but rings of less than some 40 px radius is not found. Without a table, or with
+/// nothing on it, the box is that of all points. `footprint`: world length of a pixel; `reach`:
+/// radius of what the cameras look at, world units.
+ObjectRegion find_object(const std::vector<EdgePoint>& points,
+                         const std::vector<Eigen::Vector3d>& cameras, const Eigen::Vector3d& middle,
+                         double reach, double footprint, const RegionOptions& options);
+
+}  // namespace sketchsplat

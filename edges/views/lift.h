@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "datasets/types/view.h"
+#include "edges/image/detect.h"
+#include "edges/views/hull.h"
+#include "edges/views/object_region.h"
+
+namespace sketchsplat {
+
+/// Views, their edgels, and what every geometric step needs of them. Views and maps have one order.
+struct EdgeWorld {
+  std::vector<View> views;
+  std::vector<EdgelMap> maps;
+  /// Per view, 3 x (edgels): unit normal, in the world, of the plane through camera centre and
+  /// edgel.
+  std::vector<Eigen::Matrix3Xf> plane_normal;
+  Eigen::AlignedBox3d bounds;  ///< holds the object, world units
+  ObjectRegion object;         ///< what is known of it; nothing, as a rule, where masks tell
+  double footprint = 0;        ///< world length of one pixel at the object (median over the views)
+  VisualHull hull;             ///< of the masks; empty without
+};
+
+/// Bounds from the edgels' boxes in all views: with masks, the part of space that (nearly) every
+/// view sees inside its own box of edgels; without, the part of what the cameras look at that a
+/// quarter of them sees. Views without edgels do not vote. `bounds` is empty if nothing remains.
+EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps);
+
+/// EdgeWorld::plane_normal of a view.
+Eigen::Matrix3Xf plane_normals(const View& view, const EdgelMap& map);
+
+/// The point nearest to all optical axes.
+Eigen::Vector3d meeting_point(const std::vector<View>& views);
+
+/// Points on edges in space.
+struct EdgePoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d tangent = Eigen::Vector3d::Zero();  ///< unit, sign arbitrary
+  int views = 0;     ///< that hold an edgel here with this direction
+  float rms_px = 0;  ///< of these edgels, across the edge
+  int view = 0;      ///< the edgel it was lifted from
+  int edgel = 0;
+};
+
+struct LiftOptions {
+  double stride_px = 3.0;   ///< [px] along a chain between edgels that are lifted
+  int sweep_views = 24;     ///< views that score the depths of an edgel
+  double match_px = 1.5;    ///< [px] largest distance of an edgel that supports a depth
+  double inlier_px = 1.0;   ///< [px] the same after the point was refined
+  double angle_deg = 12.0;  ///< [deg] largest angle of its plane to the tangent
+  int min_views = 4;        ///< views that must agree
+};
+
+/// Space sweep: every edgel (every stride_px of a chain) is tried at all depths inside the bounds;
+/// the depth and tangent on which most other views agree is kept and refined. Edgels that a good
+/// point already explains are not lifted again, points outside of the object are left out. Same
+/// result for any number of threads.
+std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& options);
+
+}  // namespace sketchsplat

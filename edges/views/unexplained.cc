@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "edges/views/unexplained.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sketchsplat {
+namespace {
+
+constexpr int kBeside = 2;         // edgels of a chain beside the one that a sample finds
+constexpr double kLookupPx = 4.0;  // as the detectors'
+
+}  // namespace
+
+void explain_in_view(const EdgeWorld& world, int view, const CurvePoints& samples,
+                     const ExplainOptions& options, std::vector<char>* explained) {
+  const View& v = world.views[view];
+  const EdgelMap& map = world.maps[view];
+  const double max_sine = std::sin(options.angle_deg * M_PI / 180);
+  const int last = int(map.edgels.size()) - 1;
+  for (int i = 0; i < samples.position.cols(); ++i) {
+    double depth;
+    const Eigen::Vector2d p = v.project(samples.position.col(i), &depth);
+    if (!(depth > 0)) continue;
+    const int k = map.nearest_at(p.x(), p.y());
+    if (k < 0) continue;
+    for (int j = std::max(0, k - kBeside); j <= std::min(last, k + kBeside); ++j) {
+      const Edgel& e = map.edgels[j];
+      const double x = p.x() - e.x, y = p.y() - e.y;
+      const Eigen::Vector3d n = world.plane_normal[view].col(j).cast<double>();
+      if (std::abs(x * e.nx + y * e.ny) <= options.reach_px &&
+          std::hypot(x, y) <= options.reach_px + kBeside &&
+          std::abs(n.dot(samples.tangent.col(i))) <= max_sine)
+        (*explained)[j] = 1;
+    }
+  }
+}
+
+EdgelFlags no_edgels(const EdgeWorld& world) {
+  EdgelFlags out;
+  for (const EdgelMap& m : world.maps) out.emplace_back(m.edgels.size(), 0);
+  return out;
+}
+
+void explain(const EdgeWorld& world, const CurvePoints& samples, const ExplainOptions& options,
+             EdgelFlags* explained) {
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < int(world.views.size()); ++v)
+    explain_in_view(world, v, samples, options, &(*explained)[v]);
+}
+
+EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int min_chain) {
+  const int n = int(world.views.size());
+  EdgeWorld out;
+  out.views = world.views;
+  out.bounds = world.bounds;
+  out.object = world.object;
+  out.footprint = world.footprint;
+  out.hull = world.hull;
+  out.maps.resize(n);
+  out.plane_normal.resize(n);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < n; ++v) {
+    const EdgelMap& map = world.maps[v];
+    std::vector<char> keep = explained[v];
+    for (char& k : keep) k = !k;
+    out.maps[v].width = map.width, out.maps[v].height = map.height;
+    out.maps[v].noise = map.noise;
+    const std::vector<int> kept = append_runs(map, keep, min_chain, &out.maps[v]);
+    build_lookup(&out.maps[v], kLookupPx);
+    out.plane_normal[v].resize(3, kept.size());
+    for (size_t k = 0; k < kept.size(); ++k)
+      out.plane_normal[v].col(k) = world.plane_normal[v].col(kept[k]);
+  }
+  return out;
+}
+
+}  // namespace sketchsplat

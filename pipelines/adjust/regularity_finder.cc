@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/adjust/regularity_finder.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "sketches/curve/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+using Candidate = RegularityCandidate;
+using Trial = RelationTrial;
+
+constexpr double kGate = 4;  // [sigma] beyond which nothing is tried
+
+}  // namespace
+
+bool RegularityFinder::is_conic(int i) const {
+  const StrokeKind kind = sketch().strokes[i].kind;
+  return kind == StrokeKind::kArc || kind == StrokeKind::kCircle || kind == StrokeKind::kEllipse;
+}
+
+// The least squares skip a loop through one node.
+bool RegularityFinder::is_usable(int i) const {
+  const Stroke& stroke = sketch().strokes[i];
+  return is_closed(stroke.kind) || stroke.begin != stroke.end;
+}
+
+Vector3d RegularityFinder::place_of(int point) const {
+  const int nodes = int(sketch().nodes.cols());
+  return point < nodes ? sketch().nodes.col(point) : sketch().handles.col(point - nodes);
+}
+
+// Remembers who keeps to a quantity.
+void RegularityFinder::hold(int shared, const Relation& r) {
+  held_.resize(std::max<size_t>(held_.size(), weigher_.num_shared()));
+  held_[shared].insert(r.stroke >= 0 ? r.stroke : r.point);
+  if (r.twin >= 0) held_[shared].insert(r.twin);
+}
+
+// Is the quantity known well enough to be recognised in another place?
+bool RegularityFinder::is_sure(const Candidate& c) const {
+  return c.sigma < c.range * std::exp(-weigher_.options().price);
+}
+
+// A stroke and its own direction; sigma in rad.
+Candidate RegularityFinder::along(int stroke) {
+  Candidate c;
+  c.value = stroke_direction(sketch(), stroke);
+  const double length = stroke_length(sketch(), stroke);
+  c.range = (is_conic(stroke) ? length / 2 : length) / weigher_.unit();
+  c.relation.kind = RelationKind::kParallel;
+  c.relation.stroke = stroke;
+  c.relation.scale = c.range;
+  Vector3d x, y;
+  frame_of<double>(c.value, &x, &y);
+  c.relation.across << x.transpose(), y.transpose();
+  c.sigma = weigher_.ask(c.relation, {SharedKind::kDirection, -1, c.value}).sigma / c.range;
+  return c;
+}
+
+static void sort_by_sigma(std::vector<Candidate>* c) {
+  std::stable_sort(c->begin(), c->end(),
+                   [](const Candidate& a, const Candidate& b) { return a.sigma < b.sigma; });
+}
+
+void RegularityFinder::find_directions() {
+  std::vector<Candidate> candidates;
+  for (int i = 0; i < sketch().size(); ++i) {
+    if (!is_usable(i) || stroke_direction(sketch(), i).isZero()) continue;
+    const Candidate c = along(i);
+    if (c.sigma < std::exp(-weigher_.options().price)) candidates.push_back(c);
+  }
+  sort_by_sigma(&candidates);
+  for (Candidate& c : candidates) {
+    Direction* nearest = nullptr;
+    double cosine = 0;
+    for (Direction& d : directions_) {
+      const double here = std::abs(weigher_.shared(d.shared).value.dot(c.value));
+      if (here > cosine) cosine = here, nearest = &d;
+    }
+    std::vector<Relation> one = {c.relation};
+    if (nearest && std::acos(std::min(1.0, cosine)) < kGate * (c.sigma + nearest->sigma)) {
+      const Vector3d& along = weigher_.shared(nearest->shared).value;
+      one[0].shared = nearest->shared;
+      one[0].sign = along.dot(c.value) < 0 ? -1 : 1;
+      const Trial trial = weigher_.weigh(&one, c.range, std::log(double(directions_.size())));
+      if (trial.pays()) weigher_.take(one, trial, true);
+      if (trial.pays() || !trial.news) {
+        nearest->strokes.push_back(c.relation.stroke);
+        nearest->useful = true;
+        continue;
+      }
+    }
+    Direction d;
+    d.shared = weigher_.add_shared({SharedKind::kDirection, -1, c.value}, 1);
+    d.sigma = c.sigma;
+    d.strokes = {c.relation.stroke};
+    one[0].shared = d.shared;
+    one[0].sign = 1;
+    weigher_.take(one, weigher_.weigh(&one, c.range, 0), false);
+    directions_.push_back(d);
+  }
+}
+
+void RegularityFinder::find_right_angles() {
+  const auto right_angle = [&](const Direction& a, const Direction& b) {
+    Relation r;
+    r.kind = RelationKind::kPerpendicular;
+    r.shared = a.shared, r.other = b.shared;
+    r.scale = weigher_.extent() / weigher_.unit();
+    return r;
+  };
+  const auto cosine = [&](const Direction& a, const Direction& b) {
+    return std::abs(weigher_.shared(a.shared).value.dot(weigher_.shared(b.shared).value));
+  };
+  const int n = int(directions_.size());
+  std::vector<std::pair<int, int>> pairs, right;
+  for (int a = 0; a < n; ++a)
+    for (int b = a + 1; b < n; ++b)
+      if (directions_[a].useful && directions_[b].useful) pairs.emplace_back(a, b);
+  for (const auto& [a, b] : pairs) {
+    const Direction &u = directions_[a], &v = directions_[b];
+    if (cosine(u, v) > kGate * (u.sigma + v.sigma)) continue;
+    std::vector<Relation> one = {right_angle(u, v)};
+    const Trial trial = weigher_.weigh(&one, one[0].scale, std::log(double(pairs.size())));
+    if (trial.pays()) weigher_.take(one, trial, true);
+    if (trial.pays() || !trial.news) right.emplace_back(a, b);
+  }
+  // The direction of one stroke alone may complete a frame.
+  for (Direction& d : directions_) {
+    if (d.useful) continue;
+    for (const auto& [a, b] : right) {
+      const Direction &u = directions_[a], &v = directions_[b];
+      if (cosine(u, d) > kGate * (u.sigma + d.sigma)) continue;
+      if (cosine(v, d) > kGate * (v.sigma + d.sigma)) continue;
+      std::vector<Relation> two = {right_angle(u, d), right_angle(v, d)};
+      const Trial trial = weigher_.weigh(&two, two[0].scale, std::log(double(right.size())));
+      if (!trial.pays()) continue;
+      weigher_.take(two, trial, true);
+      d.useful = true;
+      break;
+    }
+  }
+}
+
+// Candidates that lie together share a quantity: the surest one defines it, others join.
+void RegularityFinder::group(std::vector<Candidate> candidates, const SharedQuantity& blank) {
+  sort_by_sigma(&candidates);
+  const double naming = std::log(std::max(1.0, double(candidates.size())));
+  std::vector<bool> taken(candidates.size(), false);
+  for (size_t a = 0; a < candidates.size(); ++a) {
+    if (taken[a]) continue;
+    std::vector<size_t> near;
+    for (size_t b = a + 1; b < candidates.size(); ++b) {
+      const double distance = (candidates[b].value - candidates[a].value).norm() / weigher_.unit();
+      if (!taken[b] && distance < kGate * (candidates[a].sigma + candidates[b].sigma))
+        near.push_back(b);
+    }
+    if (near.empty()) continue;
+    SharedQuantity quantity = blank;
+    quantity.value = candidates[a].value;
+    const int shared = weigher_.add_shared(quantity, weigher_.extent());
+    std::vector<Relation> one = {candidates[a].relation};
+    one[0].shared = shared;
+    weigher_.take(one, weigher_.weigh(&one, candidates[a].range, 0), false);
+    hold(shared, one[0]);
+    for (size_t b : near) {
+      one = {candidates[b].relation};
+      one[0].shared = shared;
+      const Trial trial = weigher_.weigh(&one, candidates[b].range, naming);
+      if (trial.pays()) weigher_.take(one, trial, true);
+      taken[b] = trial.pays() || !trial.news;
+      if (taken[b]) hold(shared, one[0]);
+    }
+  }
+}
+
+// Nodes, inner points of cubics and centres of conics about the direction; value: offset along it.
+std::vector<Candidate> RegularityFinder::points_across(const Direction& direction) {
+  const int nodes = int(sketch().nodes.cols());
+  std::set<int> points;
+  for (int i = 0; i < sketch().size(); ++i) {
+    const Stroke& stroke = sketch().strokes[i];
+    if (!is_usable(i) || is_closed(stroke.kind)) continue;
+    points.insert({stroke.begin, stroke.end});
+    if (stroke.kind == StrokeKind::kBezier)
+      points.insert({nodes + stroke.handle, nodes + stroke.handle + 1});
+  }
+  for (int i : direction.strokes)
+    if (is_closed(sketch().strokes[i].kind)) points.insert(nodes + sketch().strokes[i].handle);
+  std::vector<Candidate> out;
+  const Vector3d normal = weigher_.shared(direction.shared).value;
+  const SharedQuantity plane = {SharedKind::kPlane, direction.shared, Vector3d::Zero()};
+  for (int p : points) {
+    Candidate c;
+    c.relation.kind = RelationKind::kCoplanar;
+    c.relation.point = p;
+    c.relation.scale = 1 / weigher_.unit();
+    c.value[0] = normal.dot(place_of(p) - weigher_.relations().origin);
+    c.sigma = weigher_.ask(c.relation, plane).sigma;
+    c.range = weigher_.extent() / weigher_.unit();
+    if (is_sure(c)) out.push_back(c);
+  }
+  return out;
+}
+
+void RegularityFinder::find_planes() {
+  for (const Direction& d : directions_)
+    if (d.useful) group(points_across(d), {SharedKind::kPlane, d.shared, Vector3d::Zero()});
+}
+
+void RegularityFinder::find_axes() {
+  for (const Direction& d : directions_) {
+    std::vector<Candidate> candidates;
+    const Vector3d along = weigher_.shared(d.shared).value;
+    Vector3d x, y;
+    frame_of<double>(along, &x, &y);
+    for (int i : d.strokes) {
+      if (!is_conic(i)) continue;
+      Candidate c;
+      c.relation.kind = RelationKind::kCoaxial;
+      c.relation.stroke = i;
+      c.relation.across << x.transpose(), y.transpose();
+      c.relation.scale = 1 / weigher_.unit();
+      c.range = weigher_.extent() / weigher_.unit();
+      const RelationWeigher::Own own =
+          weigher_.ask(c.relation, {SharedKind::kAxis, d.shared, Vector3d::Zero()});
+      c.sigma = own.sigma;
+      // The residual is the centre across the axis, which starts in the origin here.
+      c.value = (own.residual[0] * x + own.residual[1] * y) * weigher_.unit();
+      if (is_sure(c)) candidates.push_back(c);
+    }
+    group(candidates, {SharedKind::kAxis, d.shared, Vector3d::Zero()});
+  }
+}
+
+void RegularityFinder::find_radii() {
+  std::vector<Candidate> candidates;
+  for (int i = 0; i < sketch().size(); ++i) {
+    const StrokeKind kind = sketch().strokes[i].kind;
+    if (!is_usable(i) || (kind != StrokeKind::kArc && kind != StrokeKind::kCircle)) continue;
+    Candidate c;
+    c.relation.kind = RelationKind::kEqualRadius;
+    c.relation.stroke = i;
+    c.relation.scale = 1 / weigher_.unit();
+    const RelationWeigher::Own own =
+        weigher_.ask(c.relation, {SharedKind::kRadius, -1, Vector3d::Zero()});
+    c.value[0] = own.residual[0] * weigher_.unit();
+    c.range = own.residual[0];
+    c.sigma = own.sigma;
+    if (is_sure(c)) candidates.push_back(c);
+  }
+  group(candidates, {SharedKind::kRadius, -1, Vector3d::Zero()});
+}
+
+void RegularityFinder::find(int stages) {
+  if (stages > 0) find_directions();
+  if (stages > 1) find_right_angles();
+  if (stages > 2) find_planes();
+  if (stages > 3) find_axes();
+  if (stages > 4) find_radii();
+  if (stages > 5) find_mirrors();
+}
+
+Relations RegularityFinder::kept() const {
+  Relations out = weigher_.relations();
+  out.list.clear();
+  for (const Relation& r : weigher_.relations().list)
+    if (weigher_.is_used(r.shared)) out.list.push_back(r);
+  return out;
+}
+
+// Does the stroke lie in the plane whose points are `held`?
+bool RegularityFinder::lies_in(int stroke, const Direction& normal,
+                               const std::set<int>& held) const {
+  const Stroke& s = sketch().strokes[stroke];
+  const int handle = int(sketch().nodes.cols()) + s.handle;
+  if (is_conic(stroke) && std::count(normal.strokes.begin(), normal.strokes.end(), stroke) == 0)
+    return false;
+  if (is_closed(s.kind)) return held.count(handle) > 0;
+  if (s.kind == StrokeKind::kBezier && !(held.count(handle) && held.count(handle + 1)))
+    return false;
+  return held.count(s.begin) && held.count(s.end);
+}
+
+std::vector<Regularity> RegularityFinder::regularities() const {
+  std::vector<Regularity> out;
+  const auto add = [&](RelationKind kind, std::set<int> strokes) {
+    if (strokes.size() > 1) out.push_back({kind, {strokes.begin(), strokes.end()}});
+  };
+  const auto along = [&](int shared) -> const Direction& {
+    return *std::find_if(directions_.begin(), directions_.end(),
+                         [&](const Direction& d) { return d.shared == shared; });
+  };
+  for (int q = 0; q < weigher_.num_shared(); ++q) {
+    if (!weigher_.is_used(q)) continue;
+    const SharedQuantity& shared = weigher_.shared(q);
+    if (shared.kind == SharedKind::kDirection) {
+      const std::vector<int>& strokes = along(q).strokes;
+      add(RelationKind::kParallel, {strokes.begin(), strokes.end()});
+    } else if (mirrors_.count(q)) {
+      std::set<int> strokes;
+      for (int i = 0; i < sketch().size(); ++i)
+        if (is_mirrored(i, held_[q])) strokes.insert(i);
+      add(RelationKind::kSymmetric, strokes);
+    } else if (shared.kind == SharedKind::kPlane) {
+      std::set<int> strokes;
+      for (int i = 0; i < sketch().size(); ++i)
+        if (lies_in(i, along(shared.direction), held_[q])) strokes.insert(i);
+      add(RelationKind::kCoplanar, strokes);
+    } else {
+      add(shared.kind == SharedKind::kAxis ? RelationKind::kCoaxial : RelationKind::kEqualRadius,
+          held_[q]);
+    }
+  }
+  for (const Relation& r : weigher_.relations().list) {
+    if (r.kind != RelationKind::kPerpendicular) continue;
+    std::set<int> strokes;
+    for (int q : {r.shared, r.other})
+      strokes.insert(along(q).strokes.begin(), along(q).strokes.end());
+    add(r.kind, strokes);
+  }
+  return out;
+}
+
+}  // namespace sketchsplat

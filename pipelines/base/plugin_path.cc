@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/base/plugin_path.h"
+
+#include <filesystem>
+
+namespace sketchsplat {
+
+std::string plugin_path(const std::string& file, const std::string& built) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
+  // Without /proc nobody knows where we are; the current folder is not to be looked into.
+  for (const fs::path& folder : {bin, bin / ".." / "lib" / "sketchsplat"})
+    if (!bin.empty() && fs::exists(folder / file, none)) return folder / file;
+  return fs::path(built) / file;
+}
+
+}  // namespace sketchsplat

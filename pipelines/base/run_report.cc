@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/base/run_report.h"
+
+#include <sys/resource.h>
+
+#include <fstream>
+
+namespace sketchsplat {
+
+// The high-water mark of this program's memory; getrusage's counts that of the program before it in
+// the process, too, whoever started us.
+double peak_memory_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kib = 0;
+    if (word == "VmHWM:" && status >> kib) return kib * 1024 / 1e6;
+  }
+  rusage usage;
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return double(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts in KiB
+}
+
+Stage::Stage(const std::string& name, int total, RunReport* report, Progress* progress)
+    : name_(name), report_(report), progress_(progress), began_(std::chrono::steady_clock::now()) {
+  if (progress_) progress_->begin(name, total);
+}
+
+Stage::~Stage() {
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began_;
+  if (report_) report_->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
+  if (progress_) progress_->end(result_);
+}
+
+void Stage::step() {
+  if (progress_) progress_->step();
+}
+
+void warn(const std::string& text, RunReport* report, Progress* progress) {
+  if (report) report->warnings.push_back(text);
+  if (progress) progress->warn(text);
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipelines/base/progress.h"
+#include "sketches/solve/relations.h"
+
+namespace sketchsplat {
+
+/// Named numbers in the order in which they were found; written to reports as they are.
+using Numbers = std::vector<std::pair<std::string, double>>;
+
+struct StageReport {
+  std::string name;
+  double seconds = 0;  ///< wall clock
+  double peak_mb = 0;  ///< peak resident memory of the process up to the end of the stage [MB]
+  std::string result;  ///< in a few words
+};
+
+/// What happened during a run: everything in report.json that is not an option.
+struct RunReport {
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
+  std::vector<StageReport> stages;
+  Numbers counts;               ///< of the scene and the method: "views", "edgels"
+  std::vector<Numbers> rounds;  ///< one row per round
+  std::vector<Regularity> regularities;  ///< that the sketch keeps to
+  std::vector<Numbers>
+      strokes;  ///< what the confidence of each stroke was made of, see confidence.h
+  std::vector<std::string> warnings;
+};
+
+/// Peak resident memory of this process so far [MB = 1e6 bytes].
+double peak_memory_mb();
+
+/// A stage from construction to destruction: times it into the report and tells the progress.
+/// `report` and `progress` may be null.
+class Stage {
+ public:
+  /// `total` is the number of step()s that will come; 0 if nobody knows.
+  Stage(const std::string& name, int total, RunReport* report, Progress* progress);
+  ~Stage();
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  void step();  ///< from any thread
+  void result(const std::string& text) { result_ = text; }
+
+ private:
+  std::string name_, result_;
+  RunReport* report_;
+  Progress* progress_;
+  std::chrono::steady_clock::time_point began_;
+};
+
+/// Adds a warning to the report and tells the progress; both may be null.
+void warn(const std::string& text, RunReport* report, Progress* progress);
+
+}  // namespace sketchsplat

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/base/sketch_input.h"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "datasets/types/errors.h"
+#include "sketches/io/io.h"
+#include "sketches/io/json_text.h"
+
+namespace sketchsplat {
+namespace fs = std::filesystem;
+namespace {
+
+nlohmann::json parsed(const fs::path& path) {
+  std::ifstream in(path);
+  try {
+    return parse_json<nlohmann::json>(in, path.string());
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::string sketch_file(const std::string& given) {
+  std::error_code none;
+  return fs::is_directory(given, none) ? given + "/sketch.json" : given;
+}
+
+Sketch read_sketch(const std::string& given) {
+  const std::string path = sketch_file(given);
+  std::ifstream in(path);
+  if (!in) throw InputError(path, "a sketch.json", "no file that can be read");
+  return read_sketch_json(in, path);
+}
+
+SketchOrigin sketch_origin(const std::string& given) {
+  SketchOrigin out;
+  const nlohmann::json sketch = parsed(sketch_file(given));
+  if (sketch.is_object() && sketch.contains("footprint") && sketch["footprint"].is_number())
+    out.footprint = sketch["footprint"].get<double>();
+  const nlohmann::json report = parsed(fs::path(sketch_file(given)).parent_path() / "report.json");
+  const auto folder = nlohmann::json::json_pointer("/scene/folder");
+  if (report.is_object() && report.contains(folder) && report[folder].is_string())
+    out.scene = report[folder].get<std::string>();
+  std::error_code none;
+  if (!out.scene.empty() && !fs::is_directory(out.scene, none)) out.scene.clear();
+  return out;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "sketches/graph/sketch.h"
+
+namespace sketchsplat {
+
+/// The file itself, or sketch.json in the folder that `reconstruct` wrote.
+std::string sketch_file(const std::string& given);
+
+/// Throws InputError.
+Sketch read_sketch(const std::string& given);
+
+/// What the files beside a sketch say of how it was made.
+struct SketchOrigin {
+  double footprint = 0;  ///< world length of a pixel at the object; 0 if nobody says
+  std::string scene;     ///< folder of the images; empty if nobody says or it is gone
+};
+SketchOrigin sketch_origin(const std::string& given);
+
+}  // namespace sketchsplat

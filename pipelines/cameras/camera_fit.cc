@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/cameras/camera_fit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "datasets/types/median.h"
+#include "sketches/curve/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Matrix;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr int kStroke = 12, kPose = CameraUnknowns::kPose, kShared = CameraUnknowns::kMostShared;
+using StrokeVector = Matrix<double, kStroke, 1>;
+using StrokeMatrix = Matrix<double, kStroke, kStroke>;
+
+constexpr double kRank = 1e-7;        // of the largest eigenvalue: strokes slide along themselves
+constexpr double kLeastSigma = 0.05;  // [px] of an edgel, and of a stroke in a view
+constexpr double kBiweight = 4.685;    // standard deviations: 95 % efficient
+constexpr double kLeastRadius = 8;    // [px] of the object's image
+
+// One edgel that a stroke was matched with.
+struct Row {
+  int stroke, sample, view;
+  Vector2d edgel, normal;  // in the image
+  double match, weight;  // biweight of the match; what the edgel counts
+  int offset;  // index of the pair (stroke, view)
+};
+
+struct Linear {
+  double distance = 0;
+  StrokeVector stroke = StrokeVector::Zero();
+  Matrix<double, kPose, 1> pose = Matrix<double, kPose, 1>::Zero();
+  Matrix<double, kShared, 1> shared = Matrix<double, kShared, 1>::Zero();
+};
+
+// Root mean square distance of the samples' images from that of the middle, in each view.
+std::vector<double> image_radii(const Observation& o, const EdgeWorld& world,
+                                const Vector3d& middle) {
+  std::vector<double> sum(world.views.size()), count(world.views.size()), radius, known;
+  for (const SampleMatch& m : o.matches.matches) {
+    double depth;
+    const View& view = world.views[m.view];
+    sum[m.view] +=
+        (view.project(o.samples.position.col(m.sample), &depth) - view.project(middle, &depth))
+            .squaredNorm();
+    ++count[m.view];
+  }
+  for (size_t v = 0; v < sum.size(); ++v) {
+    radius.push_back(count[v] > 0 ? std::max(kLeastRadius, std::sqrt(sum[v] / count[v])) : 0);
+    if (count[v] > 0) known.push_back(radius[v]);
+  }
+  const double usual = std::max(kLeastRadius, median(known));
+  for (double& r : radius)
+    if (!(r > 0)) r = usual;
+  return radius;
+}
+
+class System {
+ public:
+  System(const Sketch& sketch, const Observation& o, const EdgeWorld& world,
+         const std::vector<View>& stated, const CameraPrior& prior);
+
+  void solve(int steps);
+  CameraFit result(const Sketch& joined);
+
+ private:
+  struct State {
+    std::vector<ControlPoints> strokes;
+    VectorXd cameras;
+  };
+  struct Normal {  // of a stroke
+    StrokeMatrix inverse;
+    StrokeVector gradient;
+    MatrixXd cross;  // 12 x cameras
+  };
+
+  void list_rows(const Observation& o, const EdgeWorld& world);
+  void weigh();
+  void place(const State& state);
+  double distance(const Row& row, Linear* linear, const PointJacobian* moves = nullptr) const;
+  double cost() const;
+  void linearise(std::vector<Linear>* rows) const;
+  void assemble(const std::vector<Linear>& rows, double damping);
+  State step() const;
+  double offset_px() const;
+  Sketch meet(const Sketch& joined) const;
+  std::vector<double> distances() const;
+
+  const SampleLayout& layout_;
+  std::vector<StrokeKind> kinds_;
+  Vector3d middle_;
+  std::vector<double> radius_;
+  CameraUnknowns cameras_;
+  State now_;
+  std::vector<Vector3d> points_, tangents_;  // of the samples
+  std::vector<Row> rows_;
+  std::vector<int> of_stroke_;  // rows of stroke s: of_stroke_[s] .. of_stroke_[s + 1] - 1
+  std::vector<std::vector<int>> of_view_;
+  int offsets_ = 0;
+  double scatter_ = 0, before_ = 0;
+  std::vector<Normal> normals_;
+  MatrixXd hessian_;  // of the cameras alone, strokes eliminated
+  VectorXd gradient_;
+};
+
+System::System(const Sketch& sketch, const Observation& o, const EdgeWorld& world,
+               const std::vector<View>& stated, const CameraPrior& prior)
+    : layout_(o.layout),
+      middle_(o.samples.position.rowwise().mean()),
+      radius_(image_radii(o, world, middle_)),
+      cameras_(stated, middle_, radius_, prior) {
+  for (int s = 0; s < sketch.size(); ++s) {
+    kinds_.push_back(sketch.strokes[s].kind);
+    now_.strokes.push_back(control_points(sketch, s));
+  }
+  points_.resize(layout_.size()), tangents_.resize(layout_.size());
+  now_.cameras = cameras_.values_of(world.views);
+  place(now_);
+  list_rows(o, world);
+  weigh();
+  before_ = offset_px();
+}
+
+void System::list_rows(const Observation& o, const EdgeWorld& world) {
+  of_stroke_.assign(1, 0);
+  of_view_.resize(world.views.size());
+  std::vector<int> offset(world.views.size());
+  for (int s = 0; s + 1 < int(layout_.first.size()); ++s) {
+    std::fill(offset.begin(), offset.end(), -1);
+    for (int m = o.matches.first[layout_.first[s]]; m < o.matches.first[layout_.first[s + 1]];
+         ++m) {
+      const SampleMatch& match = o.matches.matches[m];
+      const View& view = world.views[match.view];
+      const Edgel& e = world.maps[match.view].edgels[match.edgel];
+      Row row{s, match.sample, match.view, {}, {e.nx, e.ny}, match.weight, match.weight, 0};
+      if (!view.image_pixel({e.x, e.y}, &row.edgel)) continue;
+      if (!std::isfinite(distance(row, nullptr))) continue;
+      if (offset[match.view] < 0) offset[match.view] = offsets_++;
+      row.offset = offset[match.view];
+      of_view_[match.view].push_back(int(rows_.size()));
+      rows_.push_back(row);
+    }
+    of_stroke_.push_back(int(rows_.size()));
+  }
+}
+
+// Edgels of a stroke in a view err together, by what its view makes of it, and each by itself.
+void System::weigh() {
+  const std::vector<double> d = distances();
+  std::vector<double> sum(offsets_), weight(offsets_), count(offsets_);
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    sum[row.offset] += row.weight * d[i];
+    weight[row.offset] += row.weight;
+    ++count[row.offset];
+  }
+  std::vector<double> within, common;
+  for (size_t i = 0; i < rows_.size(); ++i)
+    within.push_back(std::abs(d[i] - sum[rows_[i].offset] / weight[rows_[i].offset]));
+  scatter_ = std::max(kLeastSigma, 1.4826 * median(within));
+  for (int k = 0; k < offsets_; ++k) common.push_back(std::abs(sum[k] / weight[k]));
+  const double shared = std::max(kLeastSigma, 1.4826 * median(common));
+  for (Row& row : rows_) {
+    const double r = sum[row.offset] / weight[row.offset] / (kBiweight * shared);
+    row.weight *= r * r < 1 ? std::pow(1 - r * r, 2) : 0;
+    row.weight /= scatter_ * scatter_ + count[row.offset] * shared * shared;
+  }
+}
+
+void System::place(const State& state) {
+  now_ = state;
+  cameras_.set(state.cameras);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < layout_.size(); ++i) {
+    const int s = layout_.stroke[i];
+    const ControlPoints& c = now_.strokes[s];
+    evaluate_curve<double>(kinds_[s], c.p.data(), layout_.t[i], &points_[i], &tangents_[i]);
+  }
+}
+
+// Signed, along the normal of the stroke's image; NaN where there is none.
+double System::distance(const Row& row, Linear* out, const PointJacobian* moves) const {
+  Vector2d pixel;
+  CameraUnknowns::Derivatives by;
+  if (!cameras_.image(row.view, points_[row.sample], &pixel, &by)) return NAN;
+  const Vector2d along = by.point * tangents_[row.sample];
+  if (!(along.norm() > 0)) return NAN;
+  Vector2d normal = Vector2d(-along.y(), along.x()).normalized();
+  if (normal.dot(row.normal) < 0) normal = -normal;
+  const double d = normal.dot(pixel - row.edgel);
+  if (out) {
+    out->distance = d;
+    out->stroke = (normal.transpose() * by.point * *moves).transpose();
+    out->pose = by.pose.transpose() * normal;
+    out->shared = by.shared.transpose() * normal;
+  }
+  return d;
+}
+
+std::vector<double> System::distances() const {
+  std::vector<double> d(rows_.size());
+#pragma omp parallel for schedule(static)
+  for (size_t i = 0; i < rows_.size(); ++i) d[i] = distance(rows_[i], nullptr);
+  return d;
+}
+
+double System::cost() const {
+  double sum = now_.cameras.cwiseAbs2().dot(cameras_.information());
+  const std::vector<double> d = distances();
+  for (size_t i = 0; i < rows_.size(); ++i) sum += rows_[i].weight * d[i] * d[i];
+  return sum;
+}
+
+void System::linearise(std::vector<Linear>* out) const {
+  out->resize(rows_.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int s = 0; s < int(kinds_.size()); ++s) {
+    PointJacobian moves;
+    int sample = -1;
+    for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
+      if (rows_[i].sample != sample)
+        moves = point_jacobian(kinds_[s], now_.strokes[s], layout_.t[sample = rows_[i].sample]);
+      distance(rows_[i], &(*out)[i], &moves);
+    }
+  }
+}
+
+// Normal equations of the strokes, and what is left of those of the cameras without them.
+void System::assemble(const std::vector<Linear>& rows, double damping) {
+  const int n = int(kinds_.size()), size = cameras_.size();
+  normals_.resize(n);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int s = 0; s < n; ++s) {
+    Normal& normal = normals_[s];
+    StrokeMatrix A = StrokeMatrix::Zero();
+    normal.gradient.setZero();
+    normal.cross = MatrixXd::Zero(kStroke, size);
+    for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
+      const Linear& r = rows[i];
+      const int camera = cameras_.camera_of(rows_[i].view), shared = cameras_.num_shared(camera);
+      const StrokeVector j = rows_[i].weight * r.stroke;
+      A.noalias() += j * r.stroke.transpose();
+      normal.gradient += j * r.distance;
+      normal.cross.middleCols<kPose>(cameras_.pose_column(rows_[i].view)).noalias() +=
+          j * r.pose.transpose();
+      normal.cross.middleCols(cameras_.shared_column(camera), shared).noalias() +=
+          j * r.shared.head(shared).transpose();
+    }
+    normal.inverse.setZero();
+    if (!(A.trace() > 0) || !A.allFinite()) continue;
+    const Eigen::SelfAdjointEigenSolver<StrokeMatrix> es(A);
+    const double largest = es.eigenvalues()[kStroke - 1];
+    for (int k = 0; k < kStroke; ++k)
+      if (es.eigenvalues()[k] > kRank * largest)
+        normal.inverse += es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() /
+                          (es.eigenvalues()[k] + damping * largest);
+  }
+  hessian_ = cameras_.information().asDiagonal();
+  gradient_ = cameras_.information().cwiseProduct(now_.cameras);
+  for (int v = 0; v < int(of_view_.size()); ++v) {
+    const int camera = cameras_.camera_of(v), shared = cameras_.num_shared(camera);
+    const int p = cameras_.pose_column(v), c = cameras_.shared_column(camera);
+    Matrix<double, kPose, kPose> poses = Matrix<double, kPose, kPose>::Zero();
+    Matrix<double, kPose, kShared> mixed = Matrix<double, kPose, kShared>::Zero();
+    Matrix<double, kShared, kShared> both = Matrix<double, kShared, kShared>::Zero();
+    for (const int i : of_view_[v]) {
+      const Linear& r = rows[i];
+      const double w = rows_[i].weight;
+      poses.noalias() += w * r.pose * r.pose.transpose();
+      mixed.noalias() += w * r.pose * r.shared.transpose();
+      both.noalias() += w * r.shared * r.shared.transpose();
+      gradient_.segment<kPose>(p) += w * r.distance * r.pose;
+      gradient_.segment(c, shared) += w * r.distance * r.shared.head(shared);
+    }
+    hessian_.block<kPose, kPose>(p, p) += poses;
+    hessian_.block(p, c, kPose, shared) += mixed.leftCols(shared);
+    hessian_.block(c, p, shared, kPose) += mixed.leftCols(shared).transpose();
+    hessian_.block(c, c, shared, shared) += both.topLeftCorner(shared, shared);
+  }
+  hessian_.diagonal() *= 1 + damping;
+  for (const Normal& normal : normals_) {
+    const MatrixXd solved = normal.inverse * normal.cross;
+    hessian_.noalias() -= normal.cross.transpose() * solved;
+    gradient_.noalias() -= solved.transpose() * normal.gradient;
+  }
+}
+
+System::State System::step() const {
+  State next = now_;
+  const VectorXd move = -hessian_.ldlt().solve(gradient_);
+  next.cameras += move;
+  for (size_t s = 0; s < next.strokes.size(); ++s) {
+    const Normal& normal = normals_[s];
+    const StrokeVector by = -normal.inverse * (normal.gradient + normal.cross * move);
+    ControlPoints& c = next.strokes[s];
+    for (int k = 0; k < c.count; ++k) c.p[k] += by.segment<3>(3 * k);
+  }
+  return next;
+}
+
+// Robust standard deviation of the offsets of strokes in views.
+double System::offset_px() const {
+  const std::vector<double> d = distances();
+  std::vector<double> sum(offsets_), weight(offsets_), offset;
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    sum[rows_[i].offset] += rows_[i].match * d[i];
+    weight[rows_[i].offset] += rows_[i].match;
+  }
+  for (int k = 0; k < offsets_; ++k) offset.push_back(std::abs(sum[k] / weight[k]));
+  return 1.4826 * median(offset);
+}
+
+void System::solve(int steps) {
+  constexpr double kEnough = 1e-6;  // of the cost
+  std::vector<Linear> rows;
+  double damping = 1e-6, least = cost();
+  for (int round = 0; round < steps; ++round) {
+    linearise(&rows);
+    const State before = now_;
+    const double last = least;
+    for (int trial = 0; trial < 6; ++trial) {
+      assemble(rows, damping);
+      place(step());
+      least = cost();
+      if (least <= last) break;
+      damping = 30 * damping;
+      place(before), least = last;
+    }
+    damping = std::max(1e-6, damping / 30);
+    if (!(last - least > kEnough * last)) break;
+  }
+}
+
+// Strokes that share a node meet half-way between where they would end.
+Sketch System::meet(const Sketch& joined) const {
+  Sketch out = joined;
+  std::vector<int> ends(joined.nodes.cols());
+  out.nodes.setZero();
+  const auto add = [&](int node, const Vector3d& place) {
+    out.nodes.col(node) += place;
+    ++ends[node];
+  };
+  for (int s = 0; s < joined.size(); ++s) {
+    const Stroke& stroke = joined.strokes[s];
+    const ControlPoints& c = now_.strokes[s];
+    const bool closed = is_closed(stroke.kind);
+    for (int h = 0; h < num_handles(stroke.kind); ++h)
+      out.handles.col(stroke.handle + h) = c.p[h + !closed];
+    if (!closed) add(stroke.begin, c.p[0]), add(stroke.end, c.p[c.count - 1]);
+  }
+  for (int n = 0; n < int(ends.size()); ++n)
+    out.nodes.col(n) =
+        ends[n] ? Vector3d(out.nodes.col(n) / ends[n]) : Vector3d(joined.nodes.col(n));
+  return out;
+}
+
+CameraFit System::result(const Sketch& joined) {
+  CameraFit out;
+  out.views = cameras_.current();
+  out.sketch = meet(joined);
+  out.scatter_px = scatter_, out.before_px = before_, out.after_px = offset_px();
+  out.offsets = offsets_, out.unknowns = cameras_.size();
+  out.radius_px = radius_;
+  std::vector<Linear> rows;
+  linearise(&rows);
+  assemble(rows, 0);
+  const int poses = kPose * cameras_.views(), shared = cameras_.size() - poses;
+  if (shared > 0) {
+    const VectorXd value = now_.cameras.tail(shared);
+    const MatrixXd cross = hessian_.topRightCorner(poses, shared);
+    const VectorXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross * value);
+    out.shared_gain = value.dot(hessian_.bottomRightCorner(shared, shared) * value) -
+                      (cross * value).dot(follow);
+    out.shared = shared;
+  }
+  return out;
+}
+
+}  // namespace
+
+CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
+                      const std::vector<View>& stated, const CameraPrior& prior, int steps) {
+  System system(sketch, observation, world, stated, prior);
+  system.solve(steps);
+  return system.result(sketch);
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/cameras/refine_poses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "datasets/types/errors.h"
+#include "datasets/types/median.h"
+#include "edges/views/recast.h"
+#include "pipelines/cameras/camera_fit.h"
+#include "pipelines/stages/stages.h"
+#include "pipelines/survey/explained.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr double kReachPx = 2, kSpacingPx = 6;
+constexpr double kOffPx = 0.15;      // strokes of exact cameras have offsets of 0.03 to 0.09 px
+constexpr double kOfScatter = 0.75;  // where edgels are vague, offsets are larger
+constexpr double kSure = 4;          // standard deviations of chi squared beyond its mean
+constexpr double kExactPx = 0.02;    // poses err at least by this
+constexpr double kLoose = 3;         // times the offsets, which do not reach beyond the matches
+constexpr double kLowShare = 0.4;    // of the edgels: strokes that explain less may be accidents
+constexpr double kChanceShare = 0.2;  // and these are compared with accidents
+constexpr double kTimesChance = 2;
+constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be mended
+constexpr double kNoWorse = 0.9;     // times the edgels that are explained, for cameras to move;
+                                     // none fewer among things, whose few strokes fit any cameras
+constexpr double kMovedPx = 0.3;     // strokes are lifted again
+constexpr int kFewestViews = 3, kMostLifts = 5;
+constexpr int kEnoughViews = 8;      // where most edges are seen by as many as a point takes
+constexpr double kAwry = 0.05;       // of the width of a picture: nothing but accidents fits
+
+struct Posed {
+  EdgeWorld world;
+  Sketch sketch;
+  RunReport report;  // of how the strokes were found, alone
+};
+
+// Then most edges in the images are no object's, and the share that strokes explain tells nothing.
+bool stands_among_things(const EdgeWorld& world) { return bool(world.object.table); }
+
+Observation look(const Posed& posed, double reach_px) {
+  MatchOptions match;
+  match.reach_px = reach_px;
+  match.quadratics = false;
+  return observe(posed.sketch, posed.world, match, kSpacingPx);
+}
+
+// Hull and bounds follow the cameras where masks tell.
+EdgeWorld refreshed(EdgeWorld world) {
+  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
+                                  [](const EdgelMap& m) { return !m.mask.empty(); });
+  if (!masked) return world;
+  const ObjectRegion object = world.object;
+  EdgeWorld out = make_edge_world(std::move(world.views), std::move(world.maps));
+  out.object = object;
+  if (!object.box.isEmpty()) out.bounds = object.box;
+  return out;
+}
+
+// Strokes anew, in the world as it is.
+void find_strokes(const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  posed->report = {};
+  try {
+    posed->sketch = fit_strokes(lift_scene(posed->world, options, &posed->report, progress),
+                                posed->world, options, &posed->report, progress);
+  } catch (const TooLittleError&) {
+    posed->sketch = {};
+  }
+}
+
+// That a focal length, centre or lens is wrong: the gain is that of chance, distributed as
+// chi squared with so many degrees of freedom, if none is.
+bool is_sure(const CameraFit& fit) {
+  return fit.shared_gain > fit.shared + kSure * std::sqrt(2.0 * fit.shared);
+}
+
+// What the first strokes say of the cameras.
+struct Misfit {
+  double offset_px = 0, pose_px = 0;   // of strokes in views; and without what views share
+  bool poses = false, shared = false;  // shared: focal length, centre or lens
+  int rows = 0;
+};
+
+Misfit misfit(const Posed& posed) {
+  Misfit out;
+  if (posed.sketch.size() == 0) return out;
+  const Observation o = look(posed, kReachPx);
+  out.rows = int(o.matches.matches.size());
+  if (out.rows == 0) return out;
+  const std::vector<View>& stated = posed.world.views;
+  CameraPrior prior;
+  const CameraFit as_stated = fit_cameras(posed.sketch, o, posed.world, stated, prior, 0);
+  out.offset_px = as_stated.before_px;
+  out.poses = out.offset_px > std::max(kOffPx, kOfScatter * as_stated.scatter_px);
+  prior.pose_px = kExactPx;
+  const CameraFit fit = fit_cameras(posed.sketch, o, posed.world, stated, prior, 3);
+  out.shared = is_sure(fit);
+  out.pose_px = out.shared ? fit.after_px : out.offset_px;
+  return out;
+}
+
+// What the views of a camera share moves only if the strokes are sure of it: where a flat object
+// does not tell, a wrong focal length would change the scale, a wrong centre the place.
+CameraPrior prior_of(const Misfit& misfit) {
+  CameraPrior prior;
+  prior.shared = misfit.shared;
+  prior.pose_px = std::max(kExactPx, (misfit.poses ? kLoose : 1) * misfit.pose_px);
+  return prior;
+}
+
+// Match, move cameras and strokes, and match again with a reach that shrinks.
+double refine(const std::vector<View>& stated, const CameraPrior& prior, Posed* posed) {
+  double offset = 0;
+  for (const double reach : {kReachPx, kReachPx, 1.5, 1.0}) {
+    if (posed->sketch.size() == 0) break;
+    const Observation o = look(*posed, reach);
+    if (o.matches.matches.empty()) break;
+    CameraFit fit = fit_cameras(posed->sketch, o, posed->world, stated, prior, 3);
+    posed->world = recast(std::move(posed->world), std::move(fit.views));
+    posed->sketch = std::move(fit.sketch);
+    offset = fit.after_px;
+  }
+  return offset;
+}
+
+// How far the cameras have moved what the strokes show [px], median over views.
+double moved_px(const Sketch& sketch, const std::vector<View>& a, const std::vector<View>& b,
+                double spacing) {
+  const Samples samples = evaluate_samples(sketch, plan_samples(sketch, spacing));
+  std::vector<double> moved;
+  for (size_t v = 0; v < a.size(); ++v) {
+    double sum = 0, depth;
+    for (int i = 0; i < samples.position.cols(); ++i)
+      sum += (a[v].project(samples.position.col(i), &depth) -
+              b[v].project(samples.position.col(i), &depth))
+                 .squaredNorm();
+    moved.push_back(std::sqrt(sum / std::max<int>(1, int(samples.position.cols()))));
+  }
+  return median(moved);
+}
+
+// Cameras that pictures of 1 / factor the size make, for those of full size.
+std::vector<View> enlarged(const std::vector<View>& coarse, std::vector<View> fine, int factor) {
+  for (size_t v = 0; v < fine.size(); ++v) {
+    fine[v].camera =
+        coarse[v].camera.enlarged(factor, fine[v].camera.width, fine[v].camera.height);
+    fine[v].cam_from_world = coarse[v].cam_from_world;
+    fine[v].lens = coarse[v].lens;
+  }
+  return fine;
+}
+
+std::vector<View> shrunk(std::vector<View> views, int factor) {
+  for (View& v : views) v.camera = v.camera.shrunk(factor);
+  return views;
+}
+
+// The world by cameras that pictures of 1 / factor the size agree on.
+EdgeWorld coarse_to_fine(const EdgeWorld& world, int factor, const std::vector<View>& stated,
+                         const ReconstructOptions& options, CameraPrior* prior,
+                         Progress* progress) {
+  Posed posed{coarser(world, factor), {}, {}};
+  find_strokes(options, progress, &posed);
+  const Misfit off = misfit(posed);
+  if (off.rows == 0) return world;
+  CameraPrior here = prior_of(off);
+  here.pose_px = std::max(here.pose_px, prior->pose_px / factor);
+  here.shared = prior->shared;
+  here.lens_px /= factor;
+  prior->pose_px = here.pose_px * factor;
+  refine(shrunk(stated, factor), here, &posed);
+  return refreshed(recast(world, enlarged(posed.world.views, stated, factor)));
+}
+
+EdgeWorld without(const EdgeWorld& world, const std::vector<char>& leave) {
+  EdgeWorld out = world;
+  out.views.clear(), out.maps.clear(), out.plane_normal.clear();
+  for (size_t v = 0; v < leave.size(); ++v) {
+    if (leave[v]) continue;
+    out.views.push_back(world.views[v]);
+    out.maps.push_back(world.maps[v]);
+    out.plane_normal.push_back(world.plane_normal[v]);
+  }
+  return refreshed(std::move(out));
+}
+
+// What strokes explain if every view looks somewhere else, each to another side.
+double chance_share(const EdgeWorld& world, const ReconstructOptions& options) {
+  std::vector<View> views = world.views;
+  for (size_t v = 0; v < views.size(); ++v) {
+    const double golden = M_PI * (3 - std::sqrt(5.0)), by = kAwry * views[v].camera.width;
+    views[v].camera.cx += by * std::cos(golden * double(v));
+    views[v].camera.cy += by * std::sin(golden * double(v));
+  }
+  Posed awry{recast(world, std::move(views)), {}, {}};
+  find_strokes(options, nullptr, &awry);
+  return explained(awry.sketch, awry.world).share;
+}
+
+// Of what strokes explain now, and explained of the cameras as stated: cameras that had to move
+// must have shown something before, or show much now, for some cameras fit any few edges.
+void check_agreement(const Posed& posed, double share, bool moved, double as_stated,
+                     const ReconstructOptions& options) {
+  if (!(share < kLowShare) || stands_among_things(posed.world)) return;
+  char found[120];
+  if (moved && as_stated < kLeastShare) {
+    std::snprintf(found, sizeof found,
+                  "%.1f %% of the edges of the images, %.1f %% if cameras move", 100 * as_stated,
+                  100 * share);
+  } else {
+    const double chance = chance_share(posed.world, options);
+    if (share > kTimesChance * chance) return;
+    std::snprintf(found, sizeof found,
+                  "%.1f %% of the edges of the images, as many as by accident (%.1f %%)",
+                  100 * share, 100 * chance);
+  }
+  const bool few = int(posed.world.views.size()) < kEnoughViews;
+  throw TooLittleError("expected poses and images that agree, found curves for " +
+                       std::string(found) + ": " + (few ? "there are too few views, or " : "") +
+                       "poses and images contradict each other");
+}
+
+// Names the views that do not fit; false if there are none.
+bool leave_out(const Explained& shares, RunReport* report, Progress* progress, Posed* posed) {
+  const std::vector<char> leave = unfit_views(shares);
+  const auto count = std::count(leave.begin(), leave.end(), 1);
+  if (count == 0 || int(leave.size()) - int(count) < kFewestViews) return false;
+  std::string names;
+  for (size_t v = 0; v < leave.size(); ++v)
+    if (leave[v]) names += (names.empty() ? "" : ", ") + posed->world.views[v].name;
+  warn("left out, for their poses do not fit the other views: " + names, report, progress);
+  report->counts.push_back({"views_left_out", double(count)});
+  posed->world = without(posed->world, leave);
+  return true;
+}
+
+// Whether the strokes, once the poses fit, are sure that what views share is wrong.
+bool shared_is_wrong(const Posed& posed, const std::vector<View>& stated, CameraPrior prior) {
+  if (posed.sketch.size() == 0) return false;
+  const Observation o = look(posed, kReachPx);
+  if (o.matches.matches.empty()) return false;
+  prior.shared = true;
+  return is_sure(fit_cameras(posed.sketch, o, posed.world, stated, prior, 3));
+}
+
+// Moves cameras and strokes, and lifts again while that moves them; the offsets that are left.
+double settle(const std::vector<View>& stated, const CameraPrior& prior,
+              const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  for (int round = 0;; ++round) {
+    const std::vector<View> before = posed->world.views;
+    const double after = refine(stated, prior, posed);
+    const double moved =
+        moved_px(posed->sketch, before, posed->world.views, posed->world.footprint * kSpacingPx);
+    posed->world = refreshed(std::move(posed->world));
+    find_strokes(options, progress, posed);
+    if (round == kMostLifts || moved < kMovedPx) return after;
+  }
+}
+
+// Poses first; focal length, centre and lens if these do not do it.
+double refine_from(const std::vector<View>& stated, CameraPrior prior,
+                   const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  const double after = settle(stated, prior, options, progress, posed);
+  if (prior.shared || !shared_is_wrong(*posed, stated, prior)) return after;
+  prior.shared = true;
+  return settle(stated, prior, options, progress, posed);
+}
+
+// From the first strokes; where these explain little, from those of small pictures, too. The
+// offsets that are left.
+double refine_all(const Posed& first, const Misfit& off, const ReconstructOptions& options,
+                  Progress* progress, Posed* posed) {
+  const std::vector<View>& stated = first.world.views;
+  CameraPrior prior = prior_of(off);
+  const double after = refine_from(stated, prior, options, progress, posed);
+  const double share = explained(posed->sketch, posed->world).share;
+  if (!(share < kLowShare) || stands_among_things(first.world)) return after;
+  Posed other = first;
+  for (const int factor : {4, 2})
+    other.world = coarse_to_fine(other.world, factor, stated, options, &prior, progress);
+  find_strokes(options, progress, &other);
+  const double after_other = refine_from(stated, prior, options, progress, &other);
+  if (!(explained(other.sketch, other.world).share > share)) return after;
+  *posed = std::move(other);
+  return after_other;
+}
+
+// Cameras that fit, where these ones do not and others explain more; true if they moved.
+bool move_cameras(const Misfit& off, double share, const ReconstructOptions& options,
+                  RunReport* report, Progress* progress, Posed* posed) {
+  const Posed stated = *posed;
+  Stage stage("poses", 0, report, progress);
+  const double after = refine_all(stated, off, options, progress, posed);
+  const double least = (stands_among_things(posed->world) ? 1 : kNoWorse) * share;
+  const bool moved =
+      options.refine_poses == "on" || explained(posed->sketch, posed->world).share > least;
+  if (!moved) *posed = stated;
+  report->counts.push_back({"pose_offset_before_px", off.offset_px});
+  report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
+  stage.result(moved ? "cameras moved" : "stated cameras fit as well");
+  return moved;
+}
+
+void append(const RunReport& from, RunReport* to) {
+  to->stages.insert(to->stages.end(), from.stages.begin(), from.stages.end());
+  to->counts.insert(to->counts.end(), from.counts.begin(), from.counts.end());
+  to->warnings.insert(to->warnings.end(), from.warnings.begin(), from.warnings.end());
+}
+
+void tell(const Explained& shares, const Misfit& off, Progress* progress) {
+  if (!progress) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "cameras: strokes explain %.0f %%, are off by %.3f px%s",
+                100 * shares.share, off.offset_px,
+                off.shared ? ", another focal length or lens fits" : "");
+  progress->note(text);
+}
+
+}  // namespace
+
+PosedStrokes pose_and_fit(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
+                          Progress* progress) {
+  Posed posed{std::move(world), {}, {}};
+  find_strokes(options, progress, &posed);
+  Explained shares = explained(posed.sketch, posed.world);
+  const bool able = options.refine_poses != "off" && posed.world.views.size() >= kFewestViews &&
+                    options.detector != "2dgs-sn";
+  const Misfit off = able ? misfit(posed) : Misfit{};
+  tell(shares, off, progress);
+  const bool low = shares.share < kChanceShare && !stands_among_things(posed.world);
+  const double as_stated = shares.share;
+  bool moved = false;
+  if (able && (off.poses || off.shared || low || options.refine_poses == "on")) {
+    moved = move_cameras(off, shares.share, options, report, progress, &posed);
+    shares = explained(posed.sketch, posed.world);
+  }
+  if (able && shares.share > 0 && leave_out(shares, report, progress, &posed)) {
+    moved = true;
+    find_strokes(options, progress, &posed);
+    shares = explained(posed.sketch, posed.world);
+  }
+  check_agreement(posed, shares.share, moved, as_stated, options);
+  append(posed.report, report);
+  if (posed.sketch.size() == 0)
+    throw TooLittleError("expected edges that several views see, found none that agree");
+  return {std::move(posed.world), std::move(posed.sketch), moved};
+}
+
+}  // namespace sketchsplat

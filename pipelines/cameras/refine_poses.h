@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "edges/views/lift.h"
+#include "pipelines/base/run_report.h"
+#include "pipelines/stages/options.h"
+#include "sketches/graph/sketch.h"
+
+namespace sketchsplat {
+
+/// The first strokes, and the cameras that they were found with.
+struct PosedStrokes {
+  EdgeWorld world;
+  Sketch sketch;
+  bool refined = false;  ///< the cameras are not those that were stated, or fewer
+};
+
+/// Lifts the edgels and fits strokes; where the strokes' offsets in single views, or a focal length
+/// or lens that fits them better, say that the cameras err (--refine-poses auto; always with "on",
+/// never with "off"), moves cameras and strokes together (camera_fit.h) and does it again with
+/// these cameras until they stay. Focal length, centre and lens move only if poses alone do not do
+/// it. Where strokes explain little even then, pictures of a quarter and a half of the size are
+/// tried. Views whose edgels do not fit the strokes of the others are left out with a warning.
+/// Without any of this nothing changes. Throws TooLittleError if views agree on no more than they
+/// would by accident.
+PosedStrokes pose_and_fit(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
+                          Progress* progress);
+
+}  // namespace sketchsplat

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/method/close_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "pipelines/survey/observe.h"
+#include "sketches/curve/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// How far curves may be from the surfaces that they lie on: in concave corners, where light changes
+// slowly, edges are off by about a pixel.
+constexpr double kTolerancePx = 1.2, kLeastTolerance = 1.5e-3;
+// Where no mask can contradict, how much surer the choice must be.
+constexpr double kWithoutMasks = 3;
+constexpr int kSightsPerStroke = 8;  // of one view
+constexpr int kMaskViews = 24, kMaskGrid = 32;
+constexpr int kClearPx = 3;  // [px] around a pixel that the mask must agree on
+
+void add_sights(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {
+  const Observation o = observe_places(sketch, world);
+  for (int s = 0; s < sketch.size(); ++s) {
+    const int first = o.layout.first[s], all = o.layout.first[s + 1] - first,
+              places = std::min(all, kSightsPerStroke);
+    for (int k = 0; k < places; ++k) {
+      const int i = first + (2 * k + 1) * all / (2 * places);
+      std::vector<bool> seen(world.views.size());
+      for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m)
+        seen[o.matches.matches[m].view] = true;
+      for (size_t v = 0; v < world.views.size(); ++v) {
+        Sight sight;
+        sight.from = world.views[v].center_in_world();
+        sight.to = o.samples.position.col(i);
+        sight.seen = seen[v];
+        sight.weight = 1.0 / places;
+        evidence->sights.push_back(sight);
+      }
+    }
+  }
+}
+
+// 1 or 0 if the mask is that all around a pixel, else -1.
+int clear_mask(const Image<uint8_t>& mask, int x, int y) {
+  if (x < kClearPx || y < kClearPx || x + kClearPx >= mask.width || y + kClearPx >= mask.height)
+    return -1;
+  for (int v = y - kClearPx; v <= y + kClearPx; ++v)
+    for (int u = x - kClearPx; u <= x + kClearPx; ++u)
+      if (mask.at(u, v) != mask.at(x, y)) return -1;
+  return mask.at(x, y);
+}
+
+struct PixelBox {
+  int x0, y0, x1, y1;
+};
+
+PixelBox box_of(const Image<uint8_t>& mask) {
+  PixelBox box{mask.width, mask.height, -1, -1};
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x)
+      if (mask.at(x, y))
+        box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x), std::max(box.y1, y)};
+  return box;
+}
+
+void add_rays(const View& view, const Image<uint8_t>& mask, const EdgeWorld& world,
+              SolidEvidence* evidence) {
+  const PixelBox box = box_of(mask);
+  const Vector3d from = view.center_in_world();
+  const double reach = (world.bounds.center() - from).norm() + world.bounds.diagonal().norm();
+  for (int i = 0; i < kMaskGrid; ++i)
+    for (int k = 0; k < kMaskGrid; ++k) {
+      const int x = box.x0 + int((i + 0.5) / kMaskGrid * (box.x1 - box.x0)),
+                y = box.y0 + int((k + 0.5) / kMaskGrid * (box.y1 - box.y0));
+      const int object = clear_mask(mask, x, y);
+      Vector2d ideal;
+      if (object < 0 || !view.ideal_pixel(Vector2d(x, y), &ideal)) continue;
+      const Vector3d ray = view.cam_from_world.rotation.transpose() * view.camera.ray(ideal);
+      evidence->rays.push_back({from, from + ray.normalized() * reach, object == 1});
+    }
+}
+
+}  // namespace
+
+SolidEvidence solid_evidence(const Sketch& sketch, const EdgeWorld& world) {
+  SolidEvidence evidence;
+  add_sights(sketch, world, &evidence);
+  const int views = int(world.views.size()), used = std::min(views, kMaskViews);
+  for (int i = 0; i < used; ++i) {
+    const int v = i * views / used;
+    if (world.maps[v].mask.width > 0)
+      add_rays(world.views[v], world.maps[v].mask, world, &evidence);
+  }
+  return evidence;
+}
+
+SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world,
+                        const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  SolidSearch search;
+  if (options.solid == "off") {
+    search.why = "it was not asked for";
+    return search;
+  }
+  Stage stage("close solid", 0, report, progress);
+  try {
+    SolidOptions how;
+    const double extent = largest_extent(sketch);
+    if (extent > 0)
+      how.tolerance = std::max(kLeastTolerance, kTolerancePx * world.footprint / extent);
+    const SolidEvidence evidence = solid_evidence(sketch, world);
+    if (evidence.rays.empty()) how.margin *= kWithoutMasks;
+    search = find_solid(sketch, how, evidence);
+  } catch (const std::runtime_error& e) {
+    search.why = e.what();
+  }
+  stage.result(search.solid ? std::to_string(search.solid->faces.size()) + " faces"
+                            : "none: " + search.why);
+  return search;
+}
+
+}  // namespace sketchsplat

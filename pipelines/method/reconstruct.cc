@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/method/reconstruct.h"
+
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "datasets/readers/smaller_pictures.h"
+#include "datasets/types/errors.h"
+#include "pipelines/cameras/refine_poses.h"
+#include "pipelines/detectors/detectors.h"
+#include "pipelines/method/close_solid.h"
+#include "pipelines/method/family_start.h"
+#include "pipelines/method/scene_tags.h"
+#include "pipelines/stages/stages.h"
+
+namespace sketchsplat {
+
+namespace {
+
+// With the clock set that all stages look at.
+ReconstructOptions started(ReconstructOptions options) {
+  if (options.budget > 0)
+    options.deadline = options.polish.deadline = options.optimize.deadline =
+        Deadline(options.budget);
+  return options;
+}
+
+void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  if (!options.deadline.passed()) return;
+  char text[120];
+  std::snprintf(text, sizeof text, "the budget of %g s is used up: not all was refined",
+                options.budget);
+  warn(text, report, progress);
+}
+
+}  // namespace
+
+// The method. Images, no larger than it takes, become edgels, edgels points in space, points
+// strokes, and these tell whether the cameras err; then rounds of drawing the strokes into the
+// views, moving them and simplifying the graph, until nothing changes; and the same once more with
+// what is found in the edgels that are left. With siblings of the part, their family's strokes,
+// moved onto the edgels, come first, and the rest is for edgels that are left.
+Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
+                           Progress* progress) {
+  const ReconstructOptions options = started(given);
+  RunReport report;
+  report.warnings = scene.warnings;
+
+  std::vector<TagSquare> tags;
+  if (options.tags) tags = measure_tags(scene, &report, progress);
+  const Scene small =
+      detector->takes_smaller_pictures() ? with_smaller_pictures(scene, options.least_side) : scene;
+  EdgeWorld all = detect_scene(small, detector, tags, options, &report, progress);
+  EdgeWorld near = focus_on_object(std::move(all), options, &report, progress);
+  const FamilyStart family = start_from_siblings(near, options, &report, progress);
+  const ReconstructOptions last = options_after(family, options);
+  const bool cold = family.sketch.size() == 0;
+  const PosedStrokes posed = cold ? pose_and_fit(std::move(near), options, &report, progress)
+                                  : PosedStrokes{std::move(near), family.sketch};
+  const EdgeWorld& world = posed.world;
+  Sketch sketch = posed.sketch;
+  const std::vector<EdgeTarget> targets =
+      cold ? make_targets(world, options.optimize) : std::vector<EdgeTarget>();
+  if (cold) {
+    sketch = drop_print(sketch, world, *detector, &report, progress);
+    sketch = run_rounds(sketch, world, targets, options, &report, progress);
+  }
+  sketch = look_again(sketch, world, targets, last, &report, progress);
+  sketch = drop_print(sketch, world, *detector, &report, progress);
+  sketch = finish_sketch(sketch, world, last, &report, progress);
+  if (sketch.size() == 0)
+    throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
+  tell_stop(options, &report, progress);
+  const Sketch proposed = propose_hidden(sketch, world, &report);
+  const SolidSearch solid = close_solid(sketch, world, options, &report, progress);
+  return {sketch,
+          report,
+          proposed,
+          view_names(world),
+          posed.refined ? at_full_size(world.views, small, scene) : std::vector<View>(),
+          tags,
+          solid};
+}
+
+Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,
+                           Progress* progress) {
+  return reconstruct(scene, make_detector(options).get(), options, progress);
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "pipelines/base/print_json.h"
+#include "pipelines/batch/run.h"
+#include "pipelines/command/cli.h"
+
+namespace sketchsplat {
+namespace {
+
+struct BatchArguments {
+  std::string roots, match;  // one a line
+  std::string list, shard;
+  bool merge = false, dry_run = false;
+  BatchRun run;
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+Shard shard_of(const std::string& text) {
+  if (text.empty()) return {};
+  Shard shard;
+  char slash = 0;
+  std::istringstream in(text);
+  in >> shard.index >> slash >> shard.count;
+  if (!in || !in.eof() || slash != '/' || shard.index < 1 || shard.index > shard.count)
+    throw UsageError("--shard: expected I/N with I from 1 to N, got '" + text + "'");
+  return shard;
+}
+
+void check_usage(const BatchArguments& arguments) {
+  if (arguments.roots.empty() && arguments.list.empty())
+    throw UsageError("batch needs ROOT or --list FILE");
+  if (arguments.merge && !arguments.shard.empty())
+    throw UsageError("--merge is for all shards: leave --shard out");
+}
+
+std::vector<BatchScene> scenes_of(const BatchArguments& arguments, Progress* progress) {
+  SceneSearch search;
+  search.roots = lines_of(arguments.roots);
+  if (!arguments.list.empty()) search.list = read_scene_list(arguments.list);
+  search.match = lines_of(arguments.match);
+  search.format = arguments.run.open.format;
+  search.out = arguments.run.out;
+  std::vector<std::string> warnings;
+  std::vector<BatchScene> mine;
+  for (const BatchScene& scene : find_scene_folders(search, &warnings))
+    if (in_shard(scene.name, arguments.run.shard.index, arguments.run.shard.count))
+      mine.push_back(scene);
+  for (const std::string& warning : warnings) progress->warn(warning);
+  return mine;
+}
+
+void tell_plan(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, bool json) {
+  double largest = 0;
+  for (const Load& load : plan.loads) largest = std::max(largest, load.memory_mb);
+  const double seconds = plan.open.empty() ? 0 : expected_seconds(plan);
+  if (json) {
+    nlohmann::ordered_json out = {{"scenes", scenes.size()},
+                                  {"done", scenes.size() - plan.open.size()},
+                                  {"jobs", plan.jobs},
+                                  {"expected_seconds", std::round(seconds)},
+                                  {"largest_mb", std::round(largest)}};
+    out["open"] = nlohmann::ordered_json::array();
+    for (const int i : plan.open) out["open"].push_back(scenes[i].scene.folder);
+    print_json(out);
+    return;
+  }
+  for (const int i : plan.open) std::cout << scenes[i].scene.folder << "\n";
+  std::cout << scenes.size() << " scenes, " << scenes.size() - plan.open.size() << " done, "
+            << plan.open.size() << " to do";
+  if (!plan.open.empty())
+    std::cout << ": " << plan.jobs << " at a time, roughly " << rough_duration(seconds)
+              << " and up to " << std::lround(largest) << " MB each";
+  std::cout << "\n";
+}
+
+// The names of the scenes that are not done, some of them.
+std::string names_of(const std::vector<SceneRow>& rows, SceneRow::State state) {
+  constexpr int kMost = 10;
+  std::string names;
+  int n = 0;
+  for (const SceneRow& row : rows)
+    if (row.state == state && n++ < kMost) names += (names.empty() ? "" : ", ") + row.scene;
+  return n > kMost ? names + " and " + std::to_string(n - kMost) + " more" : names;
+}
+
+int count(const std::vector<SceneRow>& rows, SceneRow::State state) {
+  return int(std::count_if(rows.begin(), rows.end(),
+                           [&](const SceneRow& row) { return row.state == state; }));
+}
+
+// What is there now: files, unless others write them too; and the rows.
+std::vector<SceneRow> sum_up(const std::vector<PlannedScene>& scenes, const BatchRun& run,
+                             const BatchStore& store) {
+  std::vector<SceneRow> rows;
+  std::vector<BatchScene> names;
+  for (const PlannedScene& scene : scenes) {
+    rows.push_back(scene_row(scene.scene, scene.key, store));
+    names.push_back(scene.scene);
+  }
+  sort_rows(&rows);
+  if (run.shard.count > 1) return rows;
+  const std::string options = batch_options_json(run);
+  store.write_file("summary.csv", [&](std::ostream& out) { write_summary_csv(out, rows); });
+  store.write_file("summary.json",
+                   [&](std::ostream& out) { write_summary_json(out, rows, options); });
+  store.write_file("index.html",
+                   [&](std::ostream& out) { write_summary_html(out, rows, options, store); });
+  store.write_file(".batch/timings.csv",
+                   [&](std::ostream& out) { write_timings_csv(out, names, store); });
+  return rows;
+}
+
+void tell_rows(const std::vector<SceneRow>& rows, const BatchRun& run, bool json) {
+  const int done = count(rows, SceneRow::State::kDone);
+  const int failed = count(rows, SceneRow::State::kFailed), open = int(rows.size()) - done - failed;
+  if (json) {
+    write_summary_json(std::cout, rows, batch_options_json(run));
+  } else {
+    std::cout << run.out << ": " << done << " of " << rows.size() << " scenes done";
+    if (run.shard.count > 1)
+      std::cout << " in shard " << run.shard.index << "/" << run.shard.count
+                << "; --merge writes the summary of all\n";
+    else
+      std::cout << "\n" << run.out << "/index.html: to look at\n";
+  }
+  if (failed + open == 0) return;
+  std::string text;
+  if (failed > 0)
+    text = std::to_string(failed) + " of " + std::to_string(rows.size()) +
+           " scenes failed: " + names_of(rows, SceneRow::State::kFailed);
+  if (open > 0)
+    text += std::string(text.empty() ? "" : "; ") + std::to_string(open) +
+            " are open: " + names_of(rows, SceneRow::State::kOpen);
+  throw SomeFailedError(text);
+}
+
+void run_batch_verb(BatchArguments arguments, const CommonOptions& common, Progress* progress) {
+  check_usage(arguments);
+  BatchRun& run = arguments.run;
+  run.method.seed = common.seed;
+  run.threads = std::max(1, common.threads);
+  run.shard = shard_of(arguments.shard);
+  const std::vector<PlannedScene> scenes = plan_scenes(scenes_of(arguments, progress), run);
+  if (arguments.dry_run) {
+    tell_plan(scenes, plan_batch(scenes, run, progress), common.json);
+    return;
+  }
+  const BatchStore store(run.out, run.shard);
+  if (!arguments.merge) {
+    try {
+      run_batch(scenes, plan_batch(scenes, run, progress), run, store, progress);
+    } catch (const Interrupted&) {
+      sum_up(scenes, run, store);
+      throw;
+    }
+  }
+  tell_rows(sum_up(scenes, run, store), run, common.json);
+}
+
+void list_run_fields(BatchArguments* a, Fields* f) {
+  f->group("Running");
+  f->add("jobs", &a->run.jobs, "scenes", 0, 4096,
+         "At a time, of --threads each (1 if left out); 0 is what cores and memory allow");
+  f->add("timeout", &a->run.timeout_seconds, "s", 0, 1e7,
+         "A scene that takes longer is given up; 0 waits for ever");
+  f->add("memory", &a->run.memory_mb, "MB", 0, 1e9,
+         "Address space that a scene may take; 0 sets no limit");
+  f->add("retries", &a->run.retries, "times", 0, 100,
+         "Of a scene that was killed from elsewhere, perhaps for want of memory");
+  f->add("force", &a->run.force, "Do again what is done");
+  f->add("shard", &a->shard, "I/N",
+         "Only every N-th of the scenes, from the I-th on, by hashes of their names");
+  f->add("merge", &a->merge, "Run nothing: write the summary of what is there, of all shards");
+  f->add("dry-run", &a->dry_run, "Say what is to do, how long it will take, and how much memory");
+}
+
+}  // namespace
+
+Verb batch_verb() {
+  const auto arguments = std::make_shared<BatchArguments>();
+  arguments->run.output.reproducible = true;
+  Fields f;
+  f.group("Arguments");
+  Field& roots = f.add("roots", &arguments->roots, "ROOT",
+                       "Every scene folder in or below it is reconstructed");
+  roots.positional = roots.several = true;
+  Field& out = f.add("out", &arguments->run.out, "DIR",
+                     "A folder for each scene goes there; what it holds already is not done again");
+  out.required = true;
+  out.short_name = "o";
+  f.add("list", &arguments->list, "FILE", "Scene folders, one a line, too; - is standard input");
+  f.add("match", &arguments->match, "GLOB",
+        "Only scenes whose name, or its last part, is like this; may be repeated")
+      .several = true;
+  f.choose("format", &arguments->run.open.format, scene_formats(),
+           "What the folders are; if left out, their files decide");
+  f.add("allow-outside", &arguments->run.open.allow_outside,
+        "Read images that scene files place outside of their folders, too");
+  list_run_fields(arguments.get(), &f);
+  list_fields(&arguments->run.method, &f);
+  list_fields(&arguments->run.output, &f);
+  Verb verb;
+  verb.name = "batch";
+  verb.summary = "Reconstruct every scene below a folder, and go on where it was interrupted";
+  verb.examples = {"sketchsplat batch scenes --out results",
+                   "sketchsplat batch scenes --out results --match '0000*' --preset fast --jobs 8",
+                   "sketchsplat batch --list scenes.txt --out results --shard 3/16",
+                   "sketchsplat batch --list scenes.txt --out results --merge"};
+  verb.fields = f.list;
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    run_batch_verb(*arguments, common, progress);
+  };
+  return verb;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/results/outputs.h"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "datasets/readers/colmap_write.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
+#include "pipelines/base/version.h"
+#include "pipelines/pages/overlay.h"
+#include "pipelines/results/known_scale.h"
+#include "pipelines/results/report.h"
+#include "pipelines/results/solid_output.h"
+#include "sketches/io/io.h"
+
+namespace sketchsplat {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kObjDeflection = 1e-4;  // of the extent
+
+// The picture under an overlay; white if it cannot be read any more.
+Picture background(const View& view, RunReport* report, Progress* progress) {
+  try {
+    return read_picture(view.image_path);
+  } catch (const InputError& e) {
+    warn(e.what(), report, progress);
+    return {};
+  }
+}
+
+// Returns how many.
+int write_overlays(const std::string& folder, const Sketch& sketch, const Scene& scene, int count,
+                   RunReport* report, Progress* progress) {
+  int written = 0;
+  for (const int v : spread_views(scene.views, sketch_extent(sketch).center, count)) {
+    const View& view = scene.views[v];
+    const Picture overlay = draw_overlay(sketch, view, background(view, report, progress));
+    write_png(folder + "/overlay_" + fs::path(view.name).stem().string() + ".png", overlay);
+    ++written;
+  }
+  return written;
+}
+
+// Where the views stand that the evidence counts.
+std::vector<Eigen::Vector3d> viewpoints(const Reconstruction& reconstruction, const Scene& scene) {
+  std::map<std::string, Eigen::Vector3d> center;
+  for (const View& view : scene.views) center[view.name] = view.center_in_world();
+  std::vector<Eigen::Vector3d> points;
+  for (const std::string& name : reconstruction.views) points.push_back(center[name]);
+  return points;
+}
+
+// Overlays of an earlier run show other views, perhaps; nobody should take them for today's.
+void remove_old_overlays(const std::string& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("overlay_", 0) == 0 && entry.path().extension() == ".png")
+      fs::remove(entry.path(), ignored);
+  }
+}
+
+// Views that are called as COLMAP does: by the path below the folder that holds all images.
+std::vector<View> named_by_path(std::vector<View> views) {
+  fs::path common = fs::path(views.at(0).image_path).parent_path();
+  for (const View& view : views)
+    while (!common.empty() && view.image_path.rfind(common.string() + "/", 0) != 0)
+      common = common.parent_path() == common ? fs::path() : common.parent_path();
+  for (View& view : views)
+    if (!common.empty())
+      view.name = fs::path(view.image_path).lexically_relative(common).generic_string();
+  return views;
+}
+
+// The refined cameras as a model of COLMAP, without its points; nothing of an earlier run.
+void write_cameras(const std::string& folder, const std::vector<View>& views) {
+  const char* const names[] = {"/cameras.txt", "/images.txt", "/points3D.txt"};
+  if (views.empty()) {
+    std::error_code ignored;
+    for (const char* name : names) fs::remove(folder + name, ignored);
+    if (fs::is_empty(folder, ignored)) fs::remove(folder, ignored);
+    return;
+  }
+  prepare_output_folder(folder);
+  const ColmapText text = colmap_text(named_by_path(views));
+  const std::string* const texts[] = {&text.cameras, &text.images, &text.points};
+  for (int k = 0; k < 3; ++k)
+    write_atomically(folder + names[k], [&](std::ostream& out) { out << *texts[k]; });
+}
+
+Json json_of(const std::vector<Regularity>& regularities) {
+  Json out = Json::array();
+  for (const Regularity& r : regularities)
+    out.push_back({{"kind", relation_name(r.kind)}, {"strokes", r.strokes}});
+  return out;
+}
+
+std::string product_name(const Scene& scene, const std::string& otherwise) {
+  const std::string name =
+      fs::path(scene.folder + "/.").lexically_normal().parent_path().filename().string();
+  return name.empty() ? otherwise : name;
+}
+
+StepSolidOptions solid_options(const Scene& scene, const KnownScale& scale,
+                               const OutputOptions& options) {
+  const CadOptions cad = at_scale(options.cad, scale);
+  return {product_name(scene, "solid"), cad.scale, cad.unit};
+}
+
+void write_sketch(const std::string& folder, const Reconstruction& reconstruction,
+                  const Scene& scene, const std::string& options_json, const KnownScale& scale,
+                  const OutputOptions& options) {
+  const Sketch& sketch = reconstruction.sketch;
+  Json extra = {{"program", "sketchsplat"}, {"version", program_version()}};
+  extra["options"] = Json::parse(options_json);
+  extra["regularities"] = json_of(reconstruction.report.regularities);
+  extra["views"] = reconstruction.views;
+  if (!scale.source.empty()) extra["scale"] = Json::parse(scale_json(scale));
+  for (const auto& [name, value] : reconstruction.report.counts)
+    if (name == "footprint") extra[name] = value;
+  if (reconstruction.proposed.size() > 0) {
+    std::ostringstream proposed;
+    write_sketch_json(proposed, reconstruction.proposed);
+    extra["proposed"] = Json::parse(proposed.str());
+  }
+  // Names of files may hold bytes that are no UTF-8.
+  const std::string members = extra.dump(-1, ' ', false, Json::error_handler_t::replace);
+  write_atomically(folder + "/sketch.json",
+                   [&](std::ostream& out) { write_sketch_json(out, sketch, members); });
+  write_atomically(folder + "/parametric_edges.json",
+                   [&](std::ostream& out) { write_parametric_edges(out, sketch); });
+  const CadOptions cad = at_scale(options.cad, scale);
+  write_atomically(folder + "/sketch.obj",
+                   [&](std::ostream& out) { write_obj(out, sketch, kObjDeflection, cad.scale); });
+  const StepOptions step = step_options(sketch, product_name(scene, "sketch"), cad);
+  write_atomically(folder + "/sketch.step",
+                   [&](std::ostream& out) { write_step(out, sketch, step); });
+  const double size = sketch_extent(sketch).size;
+  const double spacing = options.point_spacing * (size > 0 ? size : 1);
+  write_atomically(folder + "/edge_points.ply",
+                   [&](std::ostream& out) { write_edge_points(out, sketch, spacing); });
+}
+
+// What was asked for and cannot be had is a warning: the curves are worth something without.
+KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& options,
+                    RunReport* report, Progress* progress) {
+  double footprint = 0;
+  for (const auto& [name, value] : reconstruction.report.counts)
+    if (name == "footprint") footprint = value;
+  // As its file counts curves and nodes.
+  std::stringstream file;
+  write_sketch_json(file, reconstruction.sketch);
+  const Sketch sketch = read_sketch_json(file, "sketch.json");
+  try {
+    return known_scale(options, sketch, footprint, reconstruction.tags);
+  } catch (const InputError& e) {
+    warn(std::string(e.what()) + ": all lengths stay in world units", report, progress);
+    KnownScale none;
+    none.unit = options.unit;
+    return none;
+  }
+}
+
+}  // namespace
+
+StepOptions step_options(const Sketch& sketch, const std::string& name, const CadOptions& options) {
+  StepOptions step;
+  step.name = name;
+  step.scale = options.scale;
+  step.unit = options.unit;
+  if (options.faces) step.faces = planar_faces(sketch, options.face);
+  return step;
+}
+
+KnownScale write_outputs(const std::string& folder, Reconstruction reconstruction,
+                         const Scene& scene, ReconstructOptions reconstruct_options,
+                         OutputOptions output_options, Progress* progress) {
+  // sketch.json holds what decides the sketch; the report all options.
+  Fields method;
+  method.add("seed", &reconstruct_options.seed, "", 0, HUGE_VAL, "");
+  list_fields(&reconstruct_options, &method);
+  Fields all = method;
+  list_fields(&output_options, &all);
+  const Sketch& sketch = reconstruction.sketch;
+  ReportPage page = {&sketch};
+  KnownScale scale;
+  SolidOutcome solid;
+  {
+    Stage stage("write", 0, &reconstruction.report, progress);
+    scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
+    write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
+    solid = write_solid(folder, reconstruction.solid, solid_options(scene, scale, output_options));
+    write_cameras(folder + "/cameras", reconstruction.refined);
+    remove_old_overlays(folder);
+    Scene seen = scene;
+    if (!reconstruction.refined.empty()) seen.views = reconstruction.refined;
+    const int overlays = write_overlays(folder, sketch, seen, output_options.overlays,
+                                        &reconstruction.report, progress);
+    page.viewpoints = viewpoints(reconstruction, seen);
+    if (overlays > 0) page.photos = page_photos(seen, sketch_extent(sketch).center);
+    stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +
+                 " photographs");
+  }
+  const std::string report = report_json({&reconstruction, &scene, fields_json(all.list),
+                                          output_options.reproducible, &scale, &solid});
+  write_atomically(folder + "/report.json", [&](std::ostream& out) { out << report; });
+  write_atomically(folder + "/report.html",
+                   [&](std::ostream& out) { out << report_html(report, page); });
+  if (reconstruct_options.solid == "require" && !solid.written)
+    throw TooLittleError(scene.folder +
+                         ": expected curves that bound a solid, found none: " + solid.why);
+  return scale;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "pipelines/method/reconstruct.h"
+#include "pipelines/results/known_scale.h"
+#include "pipelines/stages/options.h"
+#include "sketches/io/io.h"
+
+namespace sketchsplat {
+
+/// Writes everything that `reconstruct` promises into the folder: sketch.json,
+/// parametric_edges.json, sketch.obj, cameras/ (if they were refined), sketch.step,
+/// edge_points.ply, solid.step (if the strokes tell one), overlay_<view>.png, report.json and
+/// report.html. The time that this takes
+/// becomes a stage of the report. sketch.obj and sketch.step are at the scale that is returned, the
+/// others in world units. Throws OutputError; TooLittleError, when all is written, if a solid is
+/// required and there is none.
+KnownScale write_outputs(const std::string& folder, Reconstruction reconstruction,
+                         const Scene& scene, ReconstructOptions reconstruct_options,
+                         OutputOptions output_options, Progress* progress);
+
+/// What write_step is to be told for this sketch.
+StepOptions step_options(const Sketch& sketch, const std::string& name, const CadOptions& options);
+
+}  // namespace sketchsplat

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/readers/scene.h"
+#include "edges/tags/tag_square.h"
+#include "edges/views/lift.h"
+#include "pipelines/adjust/optimize.h"
+#include "pipelines/base/run_report.h"
+#include "pipelines/stages/options.h"
+
+namespace sketchsplat {
+
+/// Finds the edgels of every view by the detector (detectors.h). Frames that cannot be read are
+/// left out with a warning. Throws TooLittleError if fewer than three views hold edges, InputError
+/// if no image, or no map of that name, can be read. What lies on tags is left out.
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
+                       const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// Without masks: finds the object among other things (find_object.h) by the most meaningful edges,
+/// and leaves out edgels that cannot be of it. With masks nothing changes. If the user gave a box,
+/// the object is what lies in it, with masks or without.
+EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
+                          RunReport* report, Progress* progress);
+
+/// The space sweep over all edgels. Throws TooLittleError if no point is found.
+std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
+                                  RunReport* report, Progress* progress);
+
+/// How strokes are chosen: at one price and by one least deviation for all that is described, and
+/// with the tolerance that edges of the detector need (--surfel-sigma).
+SelectOptions select_options(const ReconstructOptions& options);
+
+/// Strokes from lifted points: linked to chains, cut into the simplest curves, moved onto the
+/// edgels, chosen by what they explain, and as long as the views see them.
+Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
+                   const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// The sketch without strokes of which the detector knows that most of what it knows about lies on
+/// a smooth surface: print (Detector::judge).
+Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
+                  RunReport* report, Progress* progress);
+
+/// Rounds, until the graph does not change any more or `options` say so: strokes are drawn and
+/// moved (optimize), weighed, and the graph is simplified.
+Sketch run_rounds(Sketch sketch, const EdgeWorld& world, const std::vector<EdgeTarget>& targets,
+                  const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// A second look, at the edgels that no stroke explains. They are few, so fewer views need to agree
+/// on a point, and nothing pulls at what they show. Strokes that come of it are chosen among the
+/// others as all are; if one was, one more round follows.
+Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
+                  const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
+                  RunReport* report, Progress* progress);
+
+/// Last polish on the edgels, last choice, and the evidence that is written with the sketch.
+Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
+                     const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// Edges that no view shows but the graph implies (propose.h); counts them in the report.
+Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report);
+
+/// Of every view, in the order that Evidence::views counts in.
+std::vector<std::string> view_names(const EdgeWorld& world);
+
+}  // namespace sketchsplat

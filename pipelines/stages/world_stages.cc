@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// The stages from images to points in space; stages.cc has those of strokes.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "datasets/types/errors.h"
+#include "edges/views/find_object.h"
+#include "edges/views/focus.h"
+#include "pipelines/detectors/detectors.h"
+#include "pipelines/stages/stages.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr int kFewestViews = 3;
+constexpr double kCoarseSides = 6;  // of the picture: edgels among which the object is looked for
+constexpr double kCoarser = 4;      // times the stride at which they are lifted
+constexpr int kCoarseViews = 16;    // that score their depths
+constexpr double kBeyond = 1.5;     // times what a view sees: bounds without masks
+
+double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
+  const double sides = options.detect.meaning.most_sides;
+  return sides > 0 ? sides * std::sqrt(double(map.width) * map.height) : INFINITY;
+}
+
+}  // namespace
+
+EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
+                       const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  std::vector<Detection> found = detect_all(scene, detector, report, progress);
+  std::vector<View> views;
+  std::vector<EdgelMap> maps;
+  size_t edgels = 0, with_edges = 0;
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (!found[i].complaint.empty()) continue;
+    edgels += found[i].map.edgels.size();
+    with_edges += !found[i].map.edgels.empty();
+    views.push_back(scene.views[i]);
+    maps.push_back(without_tags(found[i].map, scene.views[i], tags));
+  }
+  if (with_edges < kFewestViews)
+    throw TooLittleError(scene.folder + ": expected edges in at least " +
+                         std::to_string(kFewestViews) + " views, found them in " +
+                         std::to_string(with_edges));
+  report->counts.push_back({"views", double(views.size())});
+  report->counts.push_back({"edgels", double(edgels)});
+  Stage stage("hull", 0, report, progress);
+  for (EdgelMap& map : maps)
+    if (!map.mask.empty()) map = most_meaningful(map, most_edgels(map, options));
+  return make_edge_world(std::move(views), std::move(maps));
+}
+
+EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
+                          RunReport* report, Progress* progress) {
+  if (!options.box.isEmpty()) {
+    ObjectRegion region;
+    region.box = options.box;
+    return focused(std::move(world), region, options.detect.meaning.most_sides);
+  }
+  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
+                                  [](const EdgelMap& m) { return !m.mask.empty(); });
+  if (masked) return world;
+  Stage stage("object", 0, report, progress);
+  const EdgeWorld coarse = focused(world, {}, kCoarseSides);
+  LiftOptions lift = options.lift;
+  lift.stride_px *= kCoarser;
+  lift.sweep_views = std::min(lift.sweep_views, kCoarseViews);
+  const std::vector<EdgePoint> points = lift_edges(coarse, lift);
+  RegionOptions look;
+  look.min_views = lift.min_views;
+  std::vector<Eigen::Vector3d> cameras;
+  for (const View& v : world.views) cameras.push_back(v.center_in_world());
+  const ObjectRegion object =
+      find_object(points, cameras, meeting_point(world.views),
+                  0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, look);
+  stage.result(object.table ? "on a table" : "no table");
+  return focused(std::move(world), object, options.detect.meaning.most_sides);
+}
+
+std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
+                                  RunReport* report, Progress* progress) {
+  Stage stage("lift", 0, report, progress);
+  std::vector<EdgePoint> points = lift_edges(world, options.lift);
+  if (points.empty())
+    throw TooLittleError("expected edges that several views see, found none that agree");
+  report->counts.push_back({"points", double(points.size())});
+  stage.result(std::to_string(points.size()) + " points");
+  return points;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "edges/views/lift.h"
+#include "pipelines/survey/likelihood.h"
+#include "pipelines/survey/observe.h"
+#include "sketches/graph/sketch.h"
+#include "topology/core/remap.h"
+
+namespace sketchsplat {
+
+struct SelectOptions {
+  int min_views = 4;           ///< that must see a stroke by edgels no better stroke explains
+  double least_nats = 0;       ///< [nat] logarithm of its likelihood ratio, see likelihood.h
+  double min_length_px = 4.0;  ///< [px]
+  double price = 3;            ///< [nat] of a parameter, see SegmentOptions
+  double place_sigma_px = 0.2;  ///< [px] see place_sigma_px
+  EvidenceModel evidence;
+  /// [nat] log prior odds of strokes that are known from elsewhere, one per stroke, NaN: none. They
+  /// add to the likelihood; neither their number of views nor their price counts, which those paid
+  /// for who knew them first. Empty: of no stroke.
+  std::vector<double> prior;
+};
+
+/// Why a stroke was not kept; the first reason that holds.
+enum class Verdict {
+  kKept,
+  kShort,      ///< shorter than min_length_px
+  kRound,      ///< the contour of a round surface, see rim.h
+  kUnlikely,   ///< no edge: what the views show there is likelier without one
+  kRedundant,  ///< better strokes explain its edgels
+};
+const char* verdict_name(Verdict verdict);
+
+struct Selection : PassResult {
+  std::vector<Verdict> verdicts;   ///< one per stroke that came in
+  std::vector<StrokeStats> stats;  ///< what the verdicts rest on
+  std::vector<double> nats;        ///< of what no better stroke explains, and of the prior
+};
+
+/// Keeps the fewest strokes that explain the edgels: best supported first, a stroke stays if the
+/// views show it, by what no stroke before it explains (likelihood.h), if it is no contour (rim.h),
+/// and if the places where enough views see what no stroke before it explains would cost more
+/// without it, as outliers, than its parameters and nodes do. A stroke that few views see meets
+/// others' edgels in those that do not see it: where these would condemn it, it is judged by the
+/// edgels alone that lie beside no better stroke.
+Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
+                         const SelectOptions& options);
+
+}  // namespace sketchsplat

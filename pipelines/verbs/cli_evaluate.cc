@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "datasets/readers/scene.h"
+#include "datasets/types/errors.h"
+#include "eval/metrics/evaluate.h"
+#include "eval/metrics/metrics.h"
+#include "eval/metrics/report.h"
+#include "pipelines/base/atomic_file.h"
+#include "pipelines/command/cli.h"
+#include "pipelines/pages/overlay.h"
+#include "pipelines/results/brep_plugin.h"
+
+namespace fs = std::filesystem;
+
+namespace sketchsplat {
+namespace {
+
+struct EvaluateArguments {
+  std::string prediction, truth, json, out;
+  Missing missing = Missing::kZero;
+  int overlays = 0;
+  EvaluateOptions options;
+};
+
+bool on_stdout(const EvaluateArguments& arguments) { return arguments.json == "-"; }
+
+void write_text(const std::string& path, const std::string& text) {
+  write_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
+Picture picture_or_white(const View& view, Progress* progress) {
+  try {
+    return read_picture(view);
+  } catch (const InputError& e) {
+    progress->warn(e.what());
+    return {};
+  }
+}
+
+// Missed edges in red, strokes that are no edges in blue. Polylines are cut finely: a part of them
+// may lie behind the camera.
+void write_worst(const Evaluation& evaluation, const std::string& folder, const std::string& out,
+                 int count, Progress* progress) {
+  std::vector<PaintedLine> lines;
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  const auto add = [&](const std::vector<CurveScore>& curves, std::array<float, 3> color) {
+    for (const CurveScore& curve : curves) {
+      const double length = polyline_length(curve.polyline);
+      lines.push_back({length > 0 ? resample(curve.polyline, length / 96) : curve.polyline, color});
+      target += lines.back().points.rowwise().mean();
+    }
+  };
+  add(evaluation.worst_strokes, {0.15f, 0.39f, 0.92f});
+  add(evaluation.worst_edges, {0.86f, 0.15f, 0.15f});
+  if (lines.empty()) return;
+  target /= double(lines.size());
+  const Scene scene = open_scene(folder);
+  for (const int v : spread_views(scene.views, target, count)) {
+    const View& view = scene.views[v];
+    const std::string name = "worst_" + fs::path(view.name).stem().string() + ".png";
+    write_png(out + "/" + name, draw_overlay(lines, view, picture_or_white(view, progress)));
+  }
+}
+
+void check_usage(const EvaluateArguments& arguments) {
+  if (arguments.overlays > 0 && arguments.out.empty()) {
+    throw UsageError("--overlays needs --out, the folder to write them to");
+  }
+  std::error_code none;
+  if (arguments.overlays > 0 && fs::is_regular_file(arguments.truth, none)) {
+    throw UsageError("--overlays needs the scene's folder as --gt, for its images");
+  }
+}
+
+void write_files(const EvaluateArguments& arguments, const std::string& json,
+                 const std::vector<SceneEvaluation>& scenes) {
+  if (!arguments.json.empty() && !on_stdout(arguments)) write_text(arguments.json, json);
+  if (arguments.out.empty()) return;
+  write_text(arguments.out + "/evaluation.json", json);
+  write_text(arguments.out + "/evaluation.csv", scenes_to_csv(scenes));
+  write_text(arguments.out + "/strokes.csv", strokes_to_csv(scenes));
+}
+
+// The solid of a result folder against the part of a scene, if both are there.
+std::optional<SolidComparison> compare_solids(const EvaluateArguments& arguments,
+                                              Progress* progress) {
+  const std::string solid = arguments.prediction + "/solid.step",
+                    part = arguments.truth + "/groundtruth/part.step";
+  std::error_code none;
+  if (!fs::exists(solid, none) || !fs::exists(part, none)) return std::nullopt;
+  try {
+    return brep_plugin().compare_solids(solid, part);
+  } catch (const std::runtime_error& e) {
+    progress->warn(e.what());
+    return std::nullopt;
+  }
+}
+
+std::string with_solid(const std::string& json, const SolidComparison& c) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::parse(json);
+  all["solid"] = {{"volume", c.volume},
+                  {"true_volume", c.true_volume},
+                  {"iou", c.iou},
+                  {"face_precision", c.face_precision},
+                  {"face_recall", c.face_recall},
+                  {"face_f", c.face_f},
+                  {"largest_distance", c.largest_distance}};
+  return all.dump(1) + "\n";
+}
+
+std::string solid_row(const SolidComparison& c) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "solid  IoU %.4f  faces P %.1f  R %.1f  F %.1f  largest distance %.2g\n", c.iou,
+                100 * c.face_precision, 100 * c.face_recall, 100 * c.face_f, c.largest_distance);
+  return text;
+}
+
+void evaluate_one(const EvaluateArguments& arguments, Progress* progress) {
+  SceneEvaluation scene;
+  scene.name = fs::path(arguments.truth).lexically_normal().stem().string();
+  scene.evaluation = evaluate(read_prediction(arguments.prediction),
+                              find_ground_truth(arguments.truth), arguments.options);
+  const std::optional<SolidComparison> solid = compare_solids(arguments, progress);
+  const std::string json =
+      solid ? with_solid(to_json(scene.evaluation), *solid) : to_json(scene.evaluation);
+  write_files(arguments, json, {scene});
+  if (arguments.overlays > 0) {
+    write_worst(scene.evaluation, arguments.truth, arguments.out, arguments.overlays, progress);
+  }
+  if (on_stdout(arguments))
+    std::cout << json;
+  else
+    std::cout << to_table(scene.evaluation) << (solid ? solid_row(*solid) : "")
+              << worst_curves(scene.evaluation);
+}
+
+void evaluate_folder(const EvaluateArguments& arguments, Progress* progress) {
+  std::vector<SceneEvaluation> results;
+  for (const ScenePair& scene : find_scenes(arguments.prediction, arguments.truth)) {
+    if (scene.prediction.empty()) {
+      const bool skip = arguments.missing == Missing::kSkip;
+      progress->warn(scene.name + ": no prediction in " + arguments.prediction +
+                     (skip ? ", left out" : ", counts as zero"));
+      if (skip) continue;
+    }
+    results.push_back(evaluate_scene(scene, arguments.options));
+    if (arguments.overlays == 0) continue;
+    const std::string out = arguments.out + "/" + scene.name;
+    prepare_output_folder(out);
+    write_worst(results.back().evaluation, scene.truth, out, arguments.overlays, progress);
+  }
+  write_files(arguments, scenes_to_json(results), results);
+  std::cout << (on_stdout(arguments) ? scenes_to_json(results) : scenes_to_table(results));
+}
+
+void run_evaluate(const EvaluateArguments& arguments, Progress* progress) {
+  check_usage(arguments);
+  if (!arguments.out.empty()) prepare_output_folder(arguments.out);
+  if (is_folder_of_scenes(arguments.truth)) {
+    evaluate_folder(arguments, progress);
+  } else {
+    evaluate_one(arguments, progress);
+  }
+}
+
+}  // namespace
+
+Verb evaluate_verb() {
+  const auto arguments = std::make_shared<EvaluateArguments>();
+  Fields f;
+  f.group("Arguments");
+  f.add("pred", &arguments->prediction, "DIR|FILE",
+        "A result folder, or a .json, .obj or .ply; or a folder of these, called like the scenes")
+      .required = true;
+  f.add("gt", &arguments->truth, "SCENE|FILE|DIR",
+        "A scene with ground truth, or the truth itself; or a folder of scenes")
+      .required = true;
+  f.choose("protocol", &arguments->options.protocol, {"sketchsplat", "emap", "curvegaussian"},
+           "Whose way of sampling predictions");
+  f.choose("missing", &arguments->missing, {"zero", "skip"},
+           "What a scene without a result counts, of several");
+  f.add("json", &arguments->json, "FILE",
+        "Write all numbers to this file, too; without FILE to standard output, nothing else")
+      .value_optional = true;
+  f.add("out", &arguments->out, "DIR",
+        "Write evaluation.json, evaluation.csv, strokes.csv and overlays there");
+  f.add("overlays", &arguments->overlays, "images", 0, 100,
+        "Draw missed edges (red) and wrong strokes (blue) over so many images");
+  Verb verb;
+  verb.name = "evaluate";
+  verb.summary = "Compare edges with the ground truth";
+  verb.examples = {"sketchsplat evaluate --pred out/part --gt scenes/part",
+                   "sketchsplat evaluate --pred out --gt scenes --out numbers --overlays 3",
+                   "sketchsplat evaluate --pred out/part/sketch.obj --gt scenes/part "
+                   "--protocol emap --json numbers.json"};
+  verb.fields = f.list;
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    if (common.json) arguments->json = "-";
+    run_evaluate(*arguments, progress);
+  };
+  return verb;
+}
+
+}  // namespace sketchsplat

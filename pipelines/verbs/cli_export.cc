@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
+#include "pipelines/base/print_json.h"
+#include "pipelines/base/sketch_input.h"
+#include "pipelines/command/cli.h"
+#include "pipelines/pages/overlay.h"
+#include "pipelines/results/known_scale.h"
+#include "pipelines/results/outputs.h"
+#include "pipelines/results/report.h"
+#include "pipelines/survey/confidence.h"
+#include "sketches/io/io.h"
+#include "sketches/io/io_glb.h"
+#include "sketches/io/json_text.h"
+
+namespace sketchsplat {
+namespace {
+
+struct ExportArguments {
+  std::string sketch, out;
+  std::string format;  // empty: by the ending of `out`
+  CadOptions cad;
+  double min_confidence = 0;
+  bool proposed = false;
+  double deflection = 1e-4;
+  double spacing = OutputOptions().point_spacing;
+};
+
+const std::vector<std::string> kFormats = {"step", "dxf", "svg",        "obj",
+                                           "glb",  "ply", "parametric", "sketch"};
+
+// The format that the ending of a file name stands for; empty if none.
+std::string format_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".step" || ending == ".stp") return "step";
+  for (const char* same : {"dxf", "svg", "obj", "glb", "ply"})
+    if (ending == std::string(".") + same) return same;
+  if (ending == ".json") return "parametric";
+  return "";
+}
+
+// What sketch.json holds beside the sketch: the options, the names of the views.
+std::string other_members(const std::string& path, bool without_proposed, const KnownScale& scale) {
+  std::ifstream in(path);
+  nlohmann::ordered_json j = parse_json<nlohmann::ordered_json>(in, path);
+  for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
+  if (without_proposed) j.erase("proposed");
+  if (!scale.source.empty()) j["scale"] = nlohmann::ordered_json::parse(scale_json(scale));
+  return j.dump();
+}
+
+// The edges that nobody saw join the nodes of the others.
+Sketch with_proposed(Sketch sketch, const std::string& given) {
+  const std::string path = sketch_file(given);
+  std::ifstream in(path);
+  const auto j = parse_json<nlohmann::ordered_json>(in, path);
+  if (!j.contains("proposed")) return sketch;
+  std::istringstream text(j["proposed"].dump());
+  const Sketch proposed = read_sketch_json(text, path + ": proposed");
+  std::vector<int> node;
+  for (int n = 0; n < proposed.nodes.cols(); ++n) {
+    int same = 0;
+    while (same < sketch.nodes.cols() && sketch.nodes.col(same) != proposed.nodes.col(n)) ++same;
+    node.push_back(same < sketch.nodes.cols() ? same : sketch.add_node(proposed.nodes.col(n)));
+  }
+  for (int i = 0; i < proposed.size(); ++i) {
+    const Stroke& s = proposed.strokes[i];
+    std::vector<Eigen::Vector3d> handles;
+    for (int h = 0; h < num_handles(s.kind); ++h)
+      handles.push_back(proposed.handles.col(s.handle + h));
+    sketch.add_stroke(s.kind, s.begin < 0 ? -1 : node[s.begin], s.end < 0 ? -1 : node[s.end],
+                      handles, proposed.evidence[i]);
+  }
+  return sketch;
+}
+
+// From the options, or else from the file.
+KnownScale scale_of(const Sketch& sketch, const ExportArguments& arguments) {
+  const CadOptions& cad = arguments.cad;
+  if (!cad.scale_given && !has_reference(cad))
+    return stated_scale(cad, sketch_file(arguments.sketch));
+  return known_scale(cad, sketch, sketch_origin(arguments.sketch).footprint, {});
+}
+
+void write(std::ostream& out, const Sketch& sketch, const ExportArguments& arguments,
+           const KnownScale& scale, const std::string& format) {
+  const std::string name = std::filesystem::path(arguments.out).stem().string();
+  const CadOptions cad = at_scale(arguments.cad, scale);
+  if (format == "step") {
+    write_step(out, sketch, step_options(sketch, name, cad));
+  } else if (format == "dxf") {
+    write_dxf(out, sketch, {cad.scale, cad.unit});
+  } else if (format == "svg") {
+    write_svg(out, sketch, {name, cad.scale, cad.unit});
+  } else if (format == "obj") {
+    write_obj(out, sketch, arguments.deflection, cad.scale);
+  } else if (format == "glb") {
+    write_glb(out, sketch, {name, cad.scale * millimetres(cad.unit) / 1000, kind_color});
+  } else if (format == "ply") {
+    const double size = sketch_extent(sketch).size;
+    write_edge_points(out, sketch, arguments.spacing * (size > 0 ? size : 1));
+  } else if (format == "parametric") {
+    write_parametric_edges(out, sketch);
+  } else {
+    write_sketch_json(out, sketch,
+                      other_members(sketch_file(arguments.sketch), arguments.proposed, scale));
+  }
+}
+
+// Options that the format cannot obey.
+void check(const ExportArguments& arguments, const std::string& format) {
+  const bool cad =
+      format == "step" || format == "dxf" || format == "svg" || format == "obj" || format == "glb";
+  check_scale(arguments.cad);
+  if (wants_tags(arguments.cad))
+    throw UsageError("--scale-by tag is for reconstruct: a sketch holds no tags");
+  if (!cad && format != "sketch" && has_reference(arguments.cad))
+    throw UsageError("--scale-by is for step, dxf, svg, obj and sketch: " + format +
+                     " is in the scene's own units");
+  if (!cad && arguments.cad.scale != 1)
+    throw UsageError("--scale is for step, dxf, svg, obj and glb: " + format +
+                     " is in the scene's own units");
+  if (format != "step" && arguments.cad.faces)
+    throw UsageError("--faces is for step: " + format + " holds curves only");
+}
+
+// Strokes of unknown confidence stay.
+Sketch confident(const Sketch& sketch, double least, const std::string& path, Progress* progress) {
+  if (!(least > 0)) return sketch;
+  const bool known = std::any_of(sketch.evidence.begin(), sketch.evidence.end(),
+                                 [](const Evidence& e) { return !std::isnan(e.confidence); });
+  if (!known && sketch.size() > 0)
+    progress->warn(path + " knows no confidence: --min-confidence leaves nothing out");
+  return keep_confident(sketch, least);
+}
+
+void run_export(const ExportArguments& arguments, bool json, Progress* progress) {
+  const std::string format = arguments.format.empty() ? format_of(arguments.out) : arguments.format;
+  if (format.empty())
+    throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
+  check(arguments, format);
+  Sketch all = read_sketch(arguments.sketch);
+  if (arguments.proposed) all = with_proposed(all, arguments.sketch);
+  const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
+  const KnownScale scale = scale_of(all, arguments);
+  write_atomically(arguments.out,
+                   [&](std::ostream& out) { write(out, sketch, arguments, scale, format); });
+  const int left_out = all.size() - sketch.size();
+  if (json)
+    print_json({{"file", arguments.out},
+                {"format", format},
+                {"curves", sketch.size()},
+                {"left_out", left_out}});
+  else if (arguments.min_confidence > 0)
+    std::cout << sketch.size() << " curves, " << left_out << " less probable ones left out\n";
+}
+
+}  // namespace
+
+Verb export_verb() {
+  const auto arguments = std::make_shared<ExportArguments>();
+  Fields f;
+  f.group("Arguments");
+  Field& sketch = f.add("sketch", &arguments->sketch, "SKETCH.json",
+                        "The sketch.json of a reconstruction, or its folder");
+  sketch.required = sketch.positional = true;
+  Field& out = f.add("out", &arguments->out, "FILE", "The file to write");
+  out.required = true;
+  out.short_name = "o";
+  f.choose("format", &arguments->format, kFormats, "If left out, the ending of FILE decides");
+  f.group("Output");
+  f.add("min-confidence", &arguments->min_confidence, "", 0, 1,
+        "Less probable strokes are left out, unless nobody knows");
+  f.add("proposed", &arguments->proposed, "Add the edges that no view shows but others imply");
+  f.add("deflection", &arguments->deflection, "of the extent", 1e-7, 0.1,
+        "Largest distance of a chord to its curve in OBJ");
+  f.add("spacing", &arguments->spacing, "of the extent", 1e-5, 1, "Distance of the samples in PLY");
+  list_fields(&arguments->cad, &f);
+  Verb verb;
+  verb.name = "export";
+  verb.summary = "Write a sketch in another format";
+  verb.examples = {"sketchsplat export out/part/sketch.json --out part.step --unit inch --scale 2",
+                   "sketchsplat export out/part -o part.step --faces --scale 50",
+                   "sketchsplat export out/part -o part.dxf --scale-by circle:12=25.4mm",
+                   "sketchsplat export out/part -o part.obj --deflection 1e-5"};
+  verb.fields = f.list;
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    run_export(*arguments, common.json, progress);
+  };
+  return verb;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "datasets/readers/frame.h"
+#include "datasets/readers/open_options.h"
+#include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
+#include "pipelines/base/print_json.h"
+#include "pipelines/cameras/find_cameras.h"
+#include "pipelines/command/cli.h"
+#include "pipelines/method/estimate.h"
+#include "pipelines/method/reconstruct.h"
+#include "pipelines/method/scene_tags.h"
+#include "pipelines/results/known_scale.h"
+#include "pipelines/results/outputs.h"
+
+namespace sketchsplat {
+namespace {
+
+struct ReconstructArguments {
+  std::string scene, out;
+  OpenOptions open;
+  bool dry_run = false;
+  std::string images;  // photographs without cameras, instead of a scene
+  std::string masks;
+  ReconstructOptions method;
+  OutputOptions output;
+};
+
+// How many views the detector finds no map for.
+int missing_maps(const Scene& scene, const std::string& detector) {
+  const std::string prefix = "maps:";
+  if (detector.rfind(prefix, 0) != 0) return 0;
+  return int(std::count_if(scene.views.begin(), scene.views.end(), [&](const View& view) {
+    return edge_map_path(scene, view, detector.substr(prefix.size())).empty();
+  }));
+}
+
+// Photographs of which only the size is known, as a scene without cameras.
+Scene photographs_in(const std::string& folder) {
+  Scene scene;
+  scene.folder = folder;
+  scene.format = "photographs without cameras";
+  for (const std::string& name : list_images(folder, true)) {
+    View view;
+    view.image_path = folder + "/" + name;
+    try {
+      const ImageSize size = read_image_size(view.image_path);
+      view.camera.width = size.width;
+      view.camera.height = size.height;
+      scene.views.push_back(view);
+    } catch (const InputError& e) {
+      scene.warnings.push_back(e.what());
+    }
+  }
+  if (scene.views.empty()) throw InputError(folder, "photographs", "none");
+  return scene;
+}
+
+void tell_scale(const KnownScale& scale) {
+  if (scale.source.empty()) return;
+  std::cout << scale.source << ": a world unit is " << scale.units_per_world << " "
+            << length_unit_names()[int(scale.unit)];
+  if (!std::isnan(scale.sigma_relative))
+    std::cout << ", with a standard deviation of " << 100 * scale.sigma_relative << " %";
+  std::cout << "\n";
+}
+
+// What would be read, how long it takes, and how much memory.
+void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool json,
+               Progress* progress) {
+  double pixels = 0;
+  for (const View& view : scene.views) pixels += double(view.camera.width) * view.camera.height;
+  const bool photographs = !arguments.images.empty();
+  const int views = int(scene.views.size()), threads = omp_get_max_threads();
+  const Load load = expected_load(views, pixels, arguments.method, threads);
+  const int missing = missing_maps(scene, arguments.method.detector);
+  KnownScale scale;
+  if (arguments.method.tags && !photographs)
+    scale = known_scale(arguments.output.cad, {}, 0, measure_tags(scene, nullptr, progress));
+  if (json) {
+    const nlohmann::ordered_json size =
+        scale.source.empty() ? nlohmann::ordered_json()
+                             : nlohmann::ordered_json::parse(scale_json(scale));
+    print_json({{"scale", size},
+                {"scene", scene.folder},
+                {"format", scene.format},
+                {"views", views},
+                {"pixels", pixels},
+                {"left_out", scene.warnings.size()},
+                {"missing_maps", missing},
+                {"threads", threads},
+                {"expected_seconds", load.seconds},
+                {"expected_mb", load.memory_mb}});
+    return;
+  }
+  std::cout << scene.folder << ": " << scene.format << ", " << views << " views, "
+            << std::llround(pixels / 1e5) / 10.0 << " million pixels";
+  if (!scene.warnings.empty()) std::cout << ", " << scene.warnings.size() << " frames left out";
+  if (missing > 0) std::cout << ", " << missing << " edge maps missing";
+  std::cout << "\nroughly " << rough_duration(load.seconds) << " with " << threads
+            << (threads == 1 ? " thread" : " threads")
+            << (photographs ? " after COLMAP, which takes far longer, " : ", ")
+            << std::lround(load.memory_mb) << " MB, into " << arguments.out << "\n";
+  tell_scale(scale);
+}
+
+void tell_result(const Sketch& sketch, const KnownScale& scale,
+                 const ReconstructArguments& arguments, bool json) {
+  if (json) {
+    std::ifstream in(arguments.out + "/report.json");
+    nlohmann::ordered_json result = {{"out", arguments.out}};
+    result.update(nlohmann::ordered_json::parse(in));
+    print_json(result);
+    return;
+  }
+  std::cout << arguments.out << "/sketch.step: " << sketch.size() << " curves, "
+            << sketch.nodes.cols() << " junctions\n"
+            << arguments.out << "/report.html: to look at\n";
+  tell_scale(scale);
+}
+
+// The scene, or the photographs with the cameras that COLMAP finds.
+Scene open_views(const ReconstructArguments& arguments, const CommonOptions& common,
+                 RunReport* report, Progress* progress) {
+  Scene scene;
+  if (arguments.images.empty()) {
+    scene = open_scene(arguments.scene, arguments.open);
+  } else {
+    prepare_output_folder(arguments.out);
+    std::error_code none;
+    if (std::filesystem::equivalent(arguments.images, arguments.out, none))
+      throw UsageError("--out must be another folder than --images: it gets pictures, too");
+    const std::string folder = arguments.out + "/colmap";
+    find_cameras(arguments.images, {arguments.out, arguments.masks}, folder, common.threads, report,
+                 progress);
+    scene = open_scene(folder, "colmap");
+    scene.folder = arguments.images;  // that is how users and files call it
+  }
+  if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
+  for (const std::string& warning : scene.warnings) progress->warn(warning);
+  return scene;
+}
+
+void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common,
+                     Progress* progress) {
+  arguments.method.seed = common.seed;
+  check_scale(arguments.output.cad);
+  arguments.method.tags = wants_tags(arguments.output.cad);
+  if (!arguments.scene.empty() && !arguments.images.empty())
+    throw UsageError("reconstruct takes SCENE or --images DIR, not both");
+  if (arguments.dry_run) {
+    tell_plan(arguments.images.empty() ? open_views(arguments, common, nullptr, progress)
+                                       : photographs_in(arguments.images),
+              arguments, common.json, progress);
+    return;
+  }
+  RunReport before;
+  const Scene scene = open_views(arguments, common, &before, progress);
+  prepare_output_folder(arguments.out);
+  Reconstruction result = reconstruct(scene, arguments.method, progress);
+  RunReport& report = result.report;
+  report.started = before.started;
+  report.stages.insert(report.stages.begin(), before.stages.begin(), before.stages.end());
+  report.warnings.insert(report.warnings.begin(), before.warnings.begin(), before.warnings.end());
+  const KnownScale scale =
+      write_outputs(arguments.out, result, scene, arguments.method, arguments.output, progress);
+  tell_result(result.sketch, scale, arguments, common.json);
+}
+
+}  // namespace
+
+Verb reconstruct_verb() {
+  const auto arguments = std::make_shared<ReconstructArguments>();
+  Fields f;
+  f.group("Arguments");
+  Field& scene = f.add("scene", &arguments->scene, "SCENE", "The folder with calibrated images");
+  scene.required = scene.positional = true;
+  scene.unless = "images";
+  Field& out = f.add("out", &arguments->out, "DIR", "The folder to write into, made if missing");
+  out.required = true;
+  out.short_name = "o";
+  f.choose("format", &arguments->open.format, scene_formats(),
+           "What the folder is; if left out, its files decide")
+      .expert = true;
+  f.add("allow-outside", &arguments->open.allow_outside,
+        "Read images that the scene file places outside of its folder, too")
+      .expert = true;
+  f.add("dry-run", &arguments->dry_run,
+        "Say what would be read, and what it takes");
+  f.add("images", &arguments->images, "DIR",
+        "Photographs without cameras: COLMAP finds them first");
+  f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
+  list_fields(&arguments->method, &f);
+  list_fields(&arguments->output, &f);
+  Verb verb;
+  verb.name = "reconstruct";
+  verb.summary = "Turn calibrated images of an object into its edges as curves";
+  verb.examples = {"sketchsplat reconstruct scenes/part --out out/part",
+                   "sketchsplat reconstruct --images photos -o out/part --masks masks",
+                   "sketchsplat reconstruct scenes/part -o out/part --scale-by tag=10mm"};
+  verb.fields = f.list;
+  verb.run = [arguments](const CommonOptions& common, Progress* progress) {
+    run_reconstruct(*arguments, common, progress);
+  };
+  return verb;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sketches/graph/face.h"
+#include "sketches/graph/sketch.h"
+
+namespace sketchsplat {
+
+enum class SurfaceKind { kPlane, kCylinder, kCone, kSphere, kTorus };
+constexpr int kNumSurfaceKinds = 5;
+const char* surface_name(SurfaceKind kind);  ///< "plane", "cylinder", ...
+
+// clang-format off
+/// An unbounded surface of revolution or a plane. World units.
+///   plane     origin: any point of it      axis: unit normal
+///   cylinder  origin: any point of its axis                       radius
+///   cone      origin: a point of its axis, where it has `radius`; slope: change of the radius per
+///             unit of length along the axis, not 0
+///   sphere    origin: centre               axis: any               radius
+///   torus     origin: centre               axis                    radius: of the centres' circle
+///             minor_radius: of the tube
+// clang-format on
+struct Surface {
+  SurfaceKind kind = SurfaceKind::kPlane;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  double radius = 0;
+  double slope = 0;
+  double minor_radius = 0;
+};
+
+/// A bounded part of a surface. Seen from outside the solid its loops run counter-clockwise about
+/// what belongs to it, holes clockwise; which loop is the outer one of a face that runs around a
+/// cylinder has no meaning. A whole sphere or torus has no loops.
+struct SolidFace {
+  int surface = -1;         ///< index into Solid::surfaces
+  bool reversed = false;    ///< out of the material is against the surface's normal: away from the
+                            ///< axis, the centre or a torus' circle of centres, of a plane its axis
+  std::vector<Loop> loops;  ///< over the strokes of Solid::edges
+};
+
+/// A closed volume: every stroke of `edges` is run once in either direction by the loops of
+/// `faces`, in all. Curves lie on their surfaces up to `Solid::gap`.
+struct Solid {
+  Sketch edges;
+  std::vector<bool> inferred;  ///< per stroke: no image shows it, the faces imply it
+  std::vector<Surface> surfaces;
+  std::vector<SolidFace> faces;
+  double gap = 0;  ///< largest distance of a curve from the surfaces that it bounds, world units
+};
+
+/// Signed distance [world units] of a point from a surface: positive on the side of its normal,
+/// which points away from the axis, the centre or the circle of centres; of a plane along its axis.
+double surface_distance(const Surface& surface, const Eigen::Vector3d& point);
+
+/// The same solid, larger by a factor > 0 about the origin.
+Solid scaled(Solid solid, double factor);
+
+}  // namespace sketchsplat

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <istream>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "datasets/types/errors.h"
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve_chain.h"
+#include "sketches/io/io.h"
+#include "sketches/io/json_text.h"
+
+namespace sketchsplat {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFormatVersion = 1;
+constexpr size_t kMost = 50000;  // nodes, strokes, handles of one: adding them copies the others
+
+Json json_of(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+// What a reader who does not know our control points wants to know; we do not read it back.
+void add_derived(const Sketch& sketch, int i, Json* stroke) {
+  const StrokeKind kind = sketch.strokes[i].kind;
+  if (kind == StrokeKind::kArc || kind == StrokeKind::kCircle) {
+    const CircleParameters c = circle_parameters(sketch, i);
+    if (!c.straight) {
+      (*stroke)["centre"] = json_of(c.centre);
+      (*stroke)["normal"] = json_of(c.normal);
+      (*stroke)["radius"] = c.radius;
+    }
+    if (kind == StrokeKind::kArc) (*stroke)["angle"] = c.angle;
+  } else if (kind == StrokeKind::kEllipse) {
+    const ControlPoints c = control_points(sketch, i);
+    const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
+    (*stroke)["centre"] = json_of(c.p[0]);
+    (*stroke)["major"] = json_of(axes.major);
+    (*stroke)["minor"] = json_of(axes.minor);
+  } else if (kind == StrokeKind::kEllipticArc) {
+    const EllipticArcParameters e = elliptic_arc_parameters(control_points(sketch, i));
+    if (e.straight) return;
+    double shift = 0;
+    const EllipseAxes axes = principal_axes(e.p, e.q, &shift);
+    (*stroke)["centre"] = json_of(e.centre);
+    (*stroke)["major"] = json_of(axes.major);
+    (*stroke)["minor"] = json_of(axes.minor);
+    (*stroke)["angles"] = {-e.half_angle - shift, e.half_angle - shift};
+  }
+}
+
+// `node`: the index in the file of every node.
+Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<int>& node) {
+  const int i = chain.strokes[0];
+  const Stroke& s = sketch.strokes[i];
+  const Evidence e = chain_evidence(sketch, chain);
+  Json out;
+  out["kind"] = kind_name(s.kind);
+  out["nodes"] = is_closed(s.kind) ? Json::array() : Json{node[chain.begin], node[chain.end]};
+  out["handles"] = Json::array();
+  if (chain.strokes.size() > 1) {
+    const Eigen::Matrix3Xd p = chain_points(sketch, chain);
+    for (int k = 1; k + 1 < p.cols(); ++k)
+      out["handles"].push_back(json_of(Eigen::Vector3d(p.col(k))));
+  } else {
+    for (int h = 0; h < num_handles(s.kind); ++h)
+      out["handles"].push_back(json_of(Eigen::Vector3d(sketch.handles.col(s.handle + h))));
+  }
+  add_derived(sketch, i, &out);
+  out["opacity"] = e.opacity;
+  out["support_views"] = e.support_views;
+  out["rms_px"] = e.rms_px;
+  if (e.bias_px > 0) out["bias_px"] = e.bias_px;
+  out["sigma"] = e.sigma;
+  if (!std::isnan(e.confidence)) out["confidence"] = e.confidence;
+  if (!e.views.empty()) out["views"] = e.views;
+  if (!e.covariance.empty()) {
+    out["determined"] = e.determined;
+    out["covariance"] = e.covariance;
+  }
+  return out;
+}
+
+// One item a line: readable, and a change of one stroke is a change of one line.
+void write_array(std::ostream& out, const char* name, const std::vector<Json>& items) {
+  out << "  \"" << name << "\": [";
+  for (size_t i = 0; i < items.size(); ++i) out << (i ? ",\n    " : "\n    ") << items[i].dump();
+  out << (items.empty() ? "]" : "\n  ]");
+}
+
+// Reads values and says where in the file the unusable one is.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {}
+
+  [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
+    throw InputError(path_, expected, found);
+  }
+  const Json& member(const Json& object, const char* key, const std::string& where) const {
+    if (!object.is_object()) fail("an object as " + where, object.type_name());
+    const auto it = object.find(key);
+    if (it == object.end()) fail("\"" + std::string(key) + "\" in " + where, "no such key");
+    return *it;
+  }
+  const Json& array(const Json& object, const char* key, const std::string& where) const {
+    const Json& a = member(object, key, where);
+    if (!a.is_array()) fail("an array as \"" + std::string(key) + "\" in " + where, a.type_name());
+    return a;
+  }
+  // An array of what a sketch is made of.
+  const Json& parts(const Json& object, const char* key, const std::string& where) const {
+    const Json& a = array(object, key, where);
+    if (a.size() > kMost)
+      fail("at most " + std::to_string(kMost) + " " + key + " in " + where,
+           std::to_string(a.size()));
+    return a;
+  }
+  Eigen::Vector3d point(const Json& j, const std::string& where) const {
+    if (!j.is_array() || j.size() != 3) fail("three numbers as " + where, summary(j));
+    for (const Json& x : j)
+      if (!x.is_number()) fail("three numbers as " + where, summary(j));
+    return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
+  }
+  double number(const Json& object, const char* key, double absent,
+                const std::string& where) const {
+    const auto it = object.find(key);
+    if (it == object.end()) return absent;
+    if (!it->is_number())
+      fail("a number as \"" + std::string(key) + "\" in " + where, summary(*it));
+    return it->get<double>();
+  }
+  int integer(const Json& j, const std::string& what) const {
+    if (!j.is_number_integer() || j.get<double>() < 0 || j.get<double>() > 2e9)
+      fail(what, summary(j));
+    return j.get<int>();
+  }
+  static std::string summary(const Json& j) {
+    const std::string text = j.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+  }
+
+ private:
+  std::string path_;
+};
+
+void read_stroke(const Reader& reader, const Json& j, const std::string& where, int num_nodes,
+                 Sketch* sketch) {
+  const Json& name = reader.member(j, "kind", where);
+  StrokeKind kind;
+  if (!name.is_string() || !parse_kind(name.get<std::string>(), &kind))
+    reader.fail("line, arc, circle, ellipse, bezier or elliptic_arc as \"kind\" of " + where,
+                Reader::summary(name));
+  const Json& nodes = reader.array(j, "nodes", where);
+  if (nodes.size() != (is_closed(kind) ? 0u : 2u))
+    reader.fail(std::string(is_closed(kind) ? "no" : "two") + " nodes in " + where,
+                std::to_string(nodes.size()));
+  int ends[2] = {-1, -1};
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    ends[k] = reader.integer(nodes[k], "an index of a node in " + where);
+    if (ends[k] >= num_nodes)
+      reader.fail("an index of a node in " + where + " below " + std::to_string(num_nodes),
+                  std::to_string(ends[k]));
+  }
+  const Json& handles = reader.parts(j, "handles", where);
+  const bool spans = kind == StrokeKind::kBezier && handles.size() % 3 == 2;
+  if (!spans && int(handles.size()) != num_handles(kind))
+    reader.fail(std::to_string(num_handles(kind)) + " handles in " + where +
+                    (kind == StrokeKind::kBezier ? ", or 3 n - 1 for n cubics" : ""),
+                std::to_string(handles.size()));
+  std::vector<Eigen::Vector3d> points;
+  for (const Json& h : handles) points.push_back(reader.point(h, "a handle in " + where));
+  Evidence e;
+  e.opacity = reader.number(j, "opacity", e.opacity, where);
+  if (j.contains("support_views"))
+    e.support_views = reader.integer(j["support_views"], "a count as support_views in " + where);
+  e.rms_px = reader.number(j, "rms_px", e.rms_px, where);
+  e.bias_px = reader.number(j, "bias_px", e.bias_px, where);
+  e.sigma = reader.number(j, "sigma", e.sigma, where);
+  e.confidence = reader.number(j, "confidence", e.confidence, where);
+  if (j.contains("views"))
+    for (const Json& v : reader.array(j, "views", where))
+      e.views.push_back(reader.integer(v, "an index of a view in " + where));
+  if (j.contains("covariance"))
+    for (const Json& c : reader.array(j, "covariance", where)) {
+      if (!c.is_number()) reader.fail("numbers as covariance of " + where, Reader::summary(c));
+      e.covariance.push_back(c.get<double>());
+    }
+  if (j.contains("determined"))
+    e.determined = reader.integer(j["determined"], "a count as determined in " + where);
+  // Each third point of a chain of cubics is a joint.
+  size_t at = 0;
+  for (; spans && at + 2 < points.size(); at += 3) {
+    const int joint = sketch->add_node(points[at + 2]);
+    sketch->add_stroke(kind, ends[0], joint, {points[at], points[at + 1]}, e);
+    ends[0] = joint;
+  }
+  sketch->add_stroke(kind, ends[0], ends[1], {points.begin() + long(at), points.end()}, e);
+}
+
+}  // namespace
+
+void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::string& extra) {
+  out << "{\n  \"format_version\": " << kFormatVersion << ",\n";
+  if (!extra.empty()) {
+    const Json members = Json::parse(extra, nullptr, false);
+    if (!members.is_object()) throw InputError("extra members of a sketch", "a JSON object", extra);
+    for (const auto& [key, value] : members.items())
+      if (key != "format_version" && key != "nodes" && key != "strokes")
+        out << "  " << Json(key).dump() << ": " << value.dump() << ",\n";
+  }
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  const std::vector<bool> inner = inner_joints(sketch, chains);
+  std::vector<Json> nodes, strokes;
+  std::vector<int> node(inner.size(), -1);
+  for (size_t i = 0; i < inner.size(); ++i) {
+    if (inner[i]) continue;
+    node[i] = int(nodes.size());
+    nodes.push_back(json_of(Eigen::Vector3d(sketch.nodes.col(i))));
+  }
+  for (const CurveChain& chain : chains) strokes.push_back(json_of(sketch, chain, node));
+  write_array(out, "nodes", nodes);
+  out << ",\n";
+  write_array(out, "strokes", strokes);
+  out << "\n}\n";
+}
+
+Sketch read_sketch_json(std::istream& in, const std::string& path) {
+  const Reader reader(path);
+  Json j;
+  try {
+    j = parse_json<Json>(in, path);
+  } catch (const Json::exception& e) {
+    reader.fail("a sketch as JSON", e.what());
+  }
+  const Json& version = reader.member(j, "format_version", "the file");
+  if (!version.is_number_integer() || version.get<double>() != kFormatVersion)
+    reader.fail("format_version " + std::to_string(kFormatVersion), Reader::summary(version));
+  Sketch sketch;
+  const Json& nodes = reader.parts(j, "nodes", "the file");
+  sketch.nodes.resize(3, nodes.size());
+  for (size_t i = 0; i < nodes.size(); ++i)
+    sketch.nodes.col(i) = reader.point(nodes[i], "node " + std::to_string(i));
+  const Json& strokes = reader.parts(j, "strokes", "the file");
+  for (size_t i = 0; i < strokes.size(); ++i) {
+    read_stroke(reader, strokes[i], "stroke " + std::to_string(i), int(nodes.size()), &sketch);
+    if (sketch.strokes.size() > kMost)
+      reader.fail("at most " + std::to_string(kMost) + " pieces of curves", "more");
+  }
+  const std::vector<std::string> complaints = validate(sketch);
+  if (!complaints.empty())
+    reader.fail("a sound sketch",
+                complaints[0] + (complaints.size() > 1
+                                     ? " (and " + std::to_string(complaints.size() - 1) + " more)"
+                                     : ""));
+  return sketch;
+}
+
+}  // namespace sketchsplat
