@@ -3,7 +3,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "sketches/graph/solid.h"
@@ -146,6 +149,139 @@ inline Solid half_cylinder() {
   m.face(SolidMaker::plane({0, 0, 0}, -Vector3d::UnitY()), false,
          {{{front_low, false}, {right, true}, {front_high, true}, {left, false}}});
   return m.solid;
+}
+
+/// A ball of radius 1 cut at a height in (-1, 1): what lies above it.
+inline Solid ball_cap(double height, const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ()) {
+  SolidMaker m;
+  const int rim = m.circle(height * up, up, std::sqrt(1 - height * height));
+  m.face({SurfaceKind::kSphere, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), 1}, false,
+         {{{rim, true}}});
+  m.face(SolidMaker::plane(height * up, -up), false, {{{rim, false}}});
+  return m.solid;
+}
+
+/// The octant of the unit ball between the positive half-axes.
+inline Solid ball_octant() {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  const int o = m.node({0, 0, 0});
+  int n[3], spoke[3], arc[3];
+  for (int k = 0; k < 3; ++k) n[k] = m.node(Vector3d::Unit(k));
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    spoke[k] = m.line(o, n[k]);
+    arc[k] = m.arc(n[k], n[next], (Vector3d::Unit(k) + Vector3d::Unit(next)).normalized());
+  }
+  m.face({SurfaceKind::kSphere, Vector3d::Zero(), Vector3d::UnitZ(), 1}, false,
+         {{{arc[0], true}, {arc[1], true}, {arc[2], true}}});
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    m.face(SolidMaker::plane({0, 0, 0}, -Vector3d::Unit((k + 2) % 3)), false,
+           {{{spoke[next], true}, {arc[k], false}, {spoke[k], false}}});
+  }
+  return m.solid;
+}
+
+inline Surface torus_about_z() {
+  return {SurfaceKind::kTorus, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), 2, 0, 0.5};
+}
+
+/// A quarter of the torus with radii 2 and 0.5 about z, as a bent rod.
+inline Solid elbow() {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  const int begin = m.circle({2, 0, 0}, -Vector3d::UnitY(), 0.5);
+  const int end = m.circle({0, 2, 0}, -Vector3d::UnitX(), 0.5);
+  m.face(torus_about_z(), false, {{{begin, false}}, {{end, false}}});
+  m.face(SolidMaker::plane({2, 0, 0}, -Vector3d::UnitY()), false, {{{begin, true}}});
+  m.face(SolidMaker::plane({0, 2, 0}, -Vector3d::UnitX()), false, {{{end, true}}});
+  return m.solid;
+}
+
+/// The upper half of that torus with its hole filled: a rounded disk of height 0.5. The round side
+/// is the outer quarter of the tube.
+inline Solid rounded_disk() {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  const Vector3d up = Vector3d::UnitZ();
+  const int rim = m.circle({0, 0, 0}, up, 2.5), top = m.circle({0, 0, 0.5}, up, 2);
+  m.face(torus_about_z(), false, {{{rim, true}}, {{top, false}}});
+  m.face(SolidMaker::plane({0, 0, 0.5}, up), false, {{{top, true}}});
+  m.face(SolidMaker::plane({0, 0, 0}, -up), false, {{{rim, false}}});
+  return m.solid;
+}
+
+/// A rod of radius 1 from z = 0 to a cut through (0, 0, 2) that rises with x; its lower rim is two
+/// arcs with corners that no seam needs.
+inline Solid cut_rod() {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  const int a = m.node({0.6, 0.8, 0}), b = m.node({-0.6, -0.8, 0});
+  const int left = m.arc(a, b, {-0.8, 0.6, 0}), right = m.arc(b, a, {0.8, -0.6, 0});
+  const int cut = m.add(StrokeKind::kEllipse, -1, -1, {{0, 0, 2}, {1, 0, 0.5}, {0, 1, 0}});
+  m.face(SolidMaker::cylinder({0, 0, 0}, Vector3d::UnitZ(), 1), false,
+         {{{left, true}, {right, true}}, {{cut, false}}});
+  m.face(SolidMaker::plane({0, 0, 0}, -Vector3d::UnitZ()), false,
+         {{{right, false}, {left, false}}});
+  m.face(SolidMaker::plane({0, 0, 2}, {-0.5, 0, 1}), false, {{{cut, true}}});
+  return m.solid;
+}
+
+/// Half of the cone with apex (0, 0, 1) over the unit disk: y > 0.
+inline Solid half_cone() {
+  using Eigen::Vector3d;
+  SolidMaker m;
+  const int a = m.node({1, 0, 0}), b = m.node({-1, 0, 0}), apex = m.node({0, 0, 1});
+  const int base = m.line(b, a), rim = m.arc(a, b, {0, 1, 0});
+  const int up = m.line(b, apex), down = m.line(apex, a);
+  m.face({SurfaceKind::kCone, {0, 0, 0}, Vector3d::UnitZ(), 1, -1}, false,
+         {{{rim, true}, {up, true}, {down, true}}});
+  m.face(SolidMaker::plane({0, 0, 0}, -Vector3d::UnitZ()), false, {{{rim, false}, {base, false}}});
+  m.face(SolidMaker::plane({0, 0, 0}, -Vector3d::UnitY()), false,
+         {{{base, true}, {down, false}, {up, false}}});
+  return m.solid;
+}
+
+/// As if all of a solid's surfaces were looked at from the other side.
+inline Solid inside_out(Solid solid) {
+  for (SolidFace& face : solid.faces) {
+    face.reversed = !face.reversed;
+    for (Loop& loop : face.loops) {
+      std::reverse(loop.begin(), loop.end());
+      for (LoopStroke& s : loop) s.forward = !s.forward;
+    }
+  }
+  return solid;
+}
+
+/// Control points moved at random by at most this along each axis.
+inline Solid perturbed(Solid solid, double by) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-by, by);
+  for (int i = 0; i < solid.edges.nodes.size(); ++i) solid.edges.nodes.data()[i] += off(random);
+  for (const Stroke& s : solid.edges.strokes)
+    if (s.handle >= 0)
+      for (int k = 0; k < 3; ++k) solid.edges.handles(k, s.handle) += off(random);
+  solid.gap = 2 * by;
+  return solid;
+}
+
+/// One of each that has edges.
+inline std::vector<Solid> some_solids() {
+  return {box_solid({0, 0, 0}, {1, 2, 3}),
+          plate_with_hole(0.2),
+          plate_with_hole(0.5),
+          half_cylinder(),
+          cone_solid(0.5),
+          cone_solid(0),
+          ball_cap(0.6),
+          ball_cap(-0.7),
+          ball_octant(),
+          elbow(),
+          rounded_disk(),
+          cut_rod(),
+          half_cone()};
 }
 
 }  // namespace sketchsplat

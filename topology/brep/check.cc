@@ -106,11 +106,12 @@ std::string name_of(const TopoDS_Shape& faulty, const Solid& solid, const BuiltS
 }
 
 // Faces, edges and vertices that meet where they share nothing.
-std::string self_intersection(const Solid& solid, const BuiltSolid& built) {
+std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance) {
   BOPAlgo_ArgumentAnalyzer analyzer;
   analyzer.SetShape1(built.shape);
   analyzer.ArgumentTypeMode() = false;
   analyzer.SelfInterMode() = true;
+  analyzer.SetFuzzyValue(tolerance);
   analyzer.Perform();
   for (const BOPAlgo_CheckResult& result : analyzer.GetCheckResult()) {
     if (result.GetCheckStatus() != BOPAlgo_SelfIntersect) continue;
@@ -135,7 +136,7 @@ std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
   for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More(); it.Next())
     if (!BRep_Tool::IsClosed(it.Current())) return "its faces do not close";
   if (!(check.volume > 1e-9 * std::pow(extent, 3))) return "it has no volume";
-  return self_intersection(solid, built);
+  return self_intersection(solid, built, check.tolerance);
 }
 
 }  // namespace

@@ -7,14 +7,21 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
+#include <Precision.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPConstruct.hxx>
 #include <STEPConstruct_DataMapOfAsciiStringTransient.hxx>
 #include <STEPConstruct_DataMapOfPointTransient.hxx>
 #include <STEPConstruct_Styles.hxx>
+#include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
+#include <STEPEdit.hxx>
+#include <StepBasic_Product.hxx>
+#include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepData_StepWriter.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_ManifoldSolidBrep.hxx>
 #include <StepVisual_Colour.hxx>
 #include <StepVisual_MechanicalDesignGeometricPresentationRepresentation.hxx>
 #include <StepVisual_PresentationStyleAssignment.hxx>
@@ -26,10 +33,14 @@
 #include <Transfer_FinderProcess.hxx>
 #include <XSControl_TransferWriter.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "datasets/types/errors.h"
 #include "sketches/io/step_file.h"
+#include "topology/brep/check.h"
 
 namespace sketchsplat::brep {
 namespace {
@@ -63,17 +74,9 @@ Handle(TCollection_HAsciiString) text_of(const std::string& text) {
   return new TCollection_HAsciiString(text.c_str());
 }
 
-// As in a string literal of the file, but for its quotes: OpenCASCADE writes backslashes as they
-// are and doubles single quotes itself.
-std::string encoded(const std::string& name) {
-  std::string out;
-  const std::string literal = step::quoted(name);
-  for (size_t i = 1; i + 1 < literal.size(); ++i) {
-    out += literal[i];
-    if (literal[i] == '\'') ++i;
-  }
-  return out;
-}
+// Stands for the name until the text is there: OpenCASCADE doubles the backslashes of everything
+// that is encoded, and numbers its products.
+constexpr char kNameToken[] = "name_of_the_product";
 
 void paint_faces(const TopoDS_Shape& shape, const Handle(XSControl_WorkSession) & session) {
   STEPConstruct_Styles styles(session);
@@ -98,9 +101,9 @@ void paint_faces(const TopoDS_Shape& shape, const Handle(XSControl_WorkSession) 
     session->Model()->AddWithRefs(presentation);
 }
 
-void set_header(const Handle(StepData_StepModel) & model, const std::string& name) {
+void set_header(const Handle(StepData_StepModel) & model) {
   APIHeaderSection_MakeHeader header(model);
-  header.SetName(text_of(name));
+  header.SetName(text_of(kNameToken));
   header.SetTimeStamp(text_of("1970-01-01T00:00:00"));
   header.SetAuthorValue(1, text_of(""));
   header.SetOrganizationValue(1, text_of(""));
@@ -111,14 +114,59 @@ void set_header(const Handle(StepData_StepModel) & model, const std::string& nam
   header.Apply(model);
 }
 
-void set_statics(const std::string& name, LengthUnit unit) {
+void set_names(const Handle(StepData_StepModel) & model) {
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    const Handle(StepBasic_Product) product = Handle(StepBasic_Product)::DownCast(entity);
+    const Handle(StepShape_ManifoldSolidBrep) solid =
+        Handle(StepShape_ManifoldSolidBrep)::DownCast(entity);
+    if (!product.IsNull()) {
+      product->SetId(text_of(kNameToken));
+      product->SetName(text_of(kNameToken));
+    }
+    if (!solid.IsNull()) solid->SetName(text_of(kNameToken));
+  }
+}
+
+// Readers take what is nearer than the stated uncertainty for one.
+double uncertainty_of(const TopoDS_Shape& shape) {
+  return std::max(Precision::Confusion(), tolerance_of(shape));
+}
+
+void set_statics(LengthUnit unit) {
   constexpr const char* kUnits[] = {"MM", "CM", "M", "INCH"};
   Interface_Static::SetCVal("write.step.unit", kUnits[int(unit)]);
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
-  Interface_Static::SetCVal("write.step.product.name", name.c_str());
   Interface_Static::SetIVal("write.step.assembly", 0);
   // Readers find the curves of edges on surfaces themselves; half of the file would be these.
   Interface_Static::SetIVal("write.surfacecurve.mode", 0);
+}
+
+std::string text_of(const Handle(StepData_StepModel) & model, const std::string& name) {
+  StepData_StepWriter writer(model);
+  writer.SendModel(Handle(StepData_Protocol)::DownCast(STEPEdit::Protocol()));
+  std::ostringstream out;
+  writer.Print(out);
+  std::string text = out.str();
+  const std::string token = std::string("'") + kNameToken + "'", literal = step::quoted(name);
+  for (size_t at = text.find(token); at != std::string::npos;
+       at = text.find(token, at + literal.size()))
+    text.replace(at, token.size(), literal);
+  return text;
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  std::ofstream out(temporary, std::ios::binary);
+  out << text;
+  out.close();
+  std::error_code error;
+  if (!out) {
+    fs::remove(temporary, error);
+    throw OutputError(path, "no way to write there");
+  }
+  fs::rename(temporary, path, error);
+  if (error) throw OutputError(path, error.message());
 }
 
 }  // namespace
@@ -126,24 +174,16 @@ void set_statics(const std::string& name, LengthUnit unit) {
 void write_step_file(const TopoDS_Shape& shape, const std::string& name, LengthUnit unit,
                      const std::string& path) {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
-  STEPControl_Writer writer;  // before the statics, which it defines
-  const std::string label = encoded(name);
-  set_statics(label, unit);
+  STEPControl_Controller::Init();  // defines what is set here, and writers look at when made
+  set_statics(unit);
+  STEPControl_Writer writer;
+  writer.SetTolerance(uncertainty_of(shape));
   if (writer.Transfer(shape, STEPControl_AsIs) != IFSelect_RetDone)
     throw OutputError(path, "a shape that STEP cannot hold");
   paint_faces(shape, writer.WS());
-  const Handle(StepRepr_RepresentationItem) solid =
-      STEPConstruct::FindEntity(writer.WS()->TransferWriter()->FinderProcess(), shape);
-  if (!solid.IsNull()) solid->SetName(text_of(label));
-  set_header(writer.Model(), label);
-  const std::string temporary = path + ".part";
-  std::error_code error;
-  if (writer.Write(temporary.c_str()) != IFSelect_RetDone) {
-    fs::remove(temporary, error);
-    throw OutputError(path, "no way to write there");
-  }
-  fs::rename(temporary, path, error);
-  if (error) throw OutputError(path, error.message());
+  set_names(writer.Model());
+  set_header(writer.Model());
+  write_text(path, text_of(writer.Model(), name));
 }
 
 }  // namespace sketchsplat::brep
