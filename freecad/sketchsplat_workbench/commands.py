@@ -56,7 +56,7 @@ class MakeSketches:
 
     def GetResources(self):
         return {
-            "Pixmap": "Sketcher_NewSketch",
+            "Pixmap": icon("sketch.svg"),
             "MenuText": "Make sketches",
             "ToolTip": "Constrained sketches of planar loops: of selected curves, or of all faces",
         }
