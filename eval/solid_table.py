@@ -64,8 +64,8 @@ def main():
             faces = f"{100 * row['face_f']:.0f}" if "iou" in row else ""
             far = f"{row['largest_distance']:.4f}" if "iou" in row else ""
             took = f"{row['seconds']:.1f}, {row['solid_seconds']:.2f}" if "seconds" in row else ""
-            print(f"| {part} | {row['verdict']} | {iou} | {faces} | {far} | {took} | {row['why']} |",
-                  flush=True)
+            cells = [part, row["verdict"], iou, faces, far, took, row["why"]]
+            print("| " + " | ".join(cells) + " |", flush=True)
     print("\n" + ", ".join(f"{n} {verdict}" for verdict, n in sorted(counts.items())))
     return 0
 

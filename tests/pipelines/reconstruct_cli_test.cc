@@ -47,9 +47,9 @@ TEST_F(Chain, WritesEveryFileItPromisesAndNothingElse) {
     else
       names.push_back(name);
   }
-  EXPECT_THAT(names, testing::UnorderedElementsAre("sketch.json", "parametric_edges.json",
-                                                   "sketch.obj", "sketch.step", "edge_points.ply",
-                                                   "report.json", "report.html"));
+  EXPECT_THAT(names, testing::UnorderedElementsAre(
+                         "sketch.json", "parametric_edges.json", "sketch.obj", "sketch.step",
+                         "solid.step", "edge_points.ply", "report.json", "report.html"));
   EXPECT_EQ(overlays, OutputOptions().overlays);
 }
 
@@ -67,8 +67,8 @@ TEST_F(Chain, EveryStrokeHasConfidenceCovarianceAndViewsAndTheUnsureCanBeLeftOut
   std::vector<double> sorted = confidence;
   std::sort(sorted.begin(), sorted.end());
   const double least = sorted[sorted.size() / 2];
-  const int sure = int(std::count_if(confidence.begin(), confidence.end(),
-                                     [&](double c) { return c >= least; }));
+  const int sure = int(
+      std::count_if(confidence.begin(), confidence.end(), [&](double c) { return c >= least; }));
   ASSERT_LT(sure, int(confidence.size()));
   std::ostringstream text;
   text.precision(17);

@@ -186,7 +186,8 @@ TEST(WriteScene, SameSeedSameBytesForAnyNumberOfThreads) {
   options.render.noise = 3;
   options.render.exposure = 0.1;
   const auto one = written(options, 1);
-  ASSERT_EQ(one.size(), 9u);  // three pictures, meta_data.json, gt.json, sketch.json, three of ABC
+  // Three pictures, meta_data.json, gt.json, sketch.json, part.step, three of ABC.
+  ASSERT_EQ(one.size(), 10u);
   EXPECT_EQ(one, written(options, 4));
   options.seed = 2;
   const auto other = written(options, 4);

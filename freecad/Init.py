@@ -1,0 +1,4 @@
+# SPDX-License-Identifier: MIT
+import FreeCAD
+
+FreeCAD.addImportType("sketchsplat result (*.json)", "sketchsplat_workbench.importer")
