@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "datasets/truth/ground_truth.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/prediction.h"
 #include "eval/metrics/structure.h"
+#include "sketches/graph/solid_comparison.h"
 
 namespace sketchsplat {
 
@@ -51,7 +53,8 @@ struct Evaluation {
   /// At most five each, none of them perfect: true edges with the least recall (all of them, smooth
   /// continuations joined), strokes with the least precision; then by length, longest first.
   std::vector<CurveScore> worst_edges, worst_strokes;
-  std::vector<CurveScore> strokes;  ///< all of them in their order, without their polylines
+  std::vector<CurveScore> strokes;       ///< all of them in their order, without their polylines
+  std::optional<SolidComparison> solid;  ///< of the solid with the true part, by whoever can
 };
 
 /// Compares a prediction with the ground truth. Both are brought to the unit cube first if the

@@ -101,6 +101,22 @@ ordered_json json_of(const std::vector<CurveScore>& curves) {
   return out;
 }
 
+ordered_json json_of(const SolidComparison& c) {
+  return {{"valid", c.valid},
+          {"volume", c.volume},
+          {"true_volume", c.true_volume},
+          {"iou", c.iou},
+          {"iou_is_exact", c.iou_is_exact},
+          {"faces", c.faces},
+          {"true_faces", c.true_faces},
+          {"face_precision", c.face_precision},
+          {"face_recall", c.face_recall},
+          {"face_f", c.face_f},
+          {"to_truth", c.to_truth},
+          {"from_truth", c.from_truth},
+          {"largest_distance", c.largest_distance}};
+}
+
 bool has_structure(const Evaluation& e) { return e.has_curves && e.has_strokes; }
 
 ordered_json json_of(const Evaluation& e) {
@@ -114,6 +130,7 @@ ordered_json json_of(const Evaluation& e) {
   add_score(e.fine, &out["fine"]);
   out["structure"] = nullptr;
   if (has_structure(e)) out["structure"] = json_of(e.structure, e.has_visibility);
+  if (e.solid) out["solid"] = json_of(*e.solid);
   out["worst_edges"] = json_of(e.worst_edges);
   out["worst_strokes"] = json_of(e.worst_strokes);
   return out;
@@ -295,6 +312,19 @@ std::string scenes_to_table(const std::vector<SceneEvaluation>& scenes) {
   }
   rows.push_back(cells_of(mean_of(numbers), "mean"));
   return aligned(rows);
+}
+
+std::string solid_row(const Evaluation& e) {
+  if (!e.solid) return "";
+  const SolidComparison& c = *e.solid;
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "solid%s: IoU %s, %d faces of %d: P %.1f, R %.1f, F %.1f; largest distance to the "
+                "truth %.2g, from it %.2g\n",
+                c.valid ? "" : " (not valid)", number(c.iou, c.iou_is_exact ? 6 : 3).c_str(),
+                c.faces, c.true_faces, 100 * c.face_precision, 100 * c.face_recall, 100 * c.face_f,
+                c.to_truth, c.from_truth);
+  return text;
 }
 
 std::string worst_curves(const Evaluation& e) {

@@ -25,6 +25,7 @@ std::string to_table(const Evaluation& evaluation, const std::string& name = "")
 ///               true_parameters, parameters_per_true, junctions {predicted, truth, matched,
 ///               precision, recall, f}, visible: null or {edges, matched, recall, f, junctions,
 ///               junction_recall}
+///   solid       only if solids are compared: the members of SolidComparison
 ///   worst_edges, worst_strokes   lists of {name, type, length, share (per cent), worst
 ///               (thousandths)}
 ///   protocol, prediction, ground_truth, lines, curves, samples, truth_samples
@@ -33,6 +34,9 @@ std::string to_json(const Evaluation& evaluation);
 /// Every stroke as a row of CSV: scene, stroke (its name), kind, length, share (per cent of it
 /// within 0.005 of the truth), worst (thousandths).
 std::string strokes_to_csv(const std::vector<SceneEvaluation>& scenes);
+
+/// The comparison of solids in words, a line; empty if there is none.
+std::string solid_row(const Evaluation& evaluation);
 
 /// The worst curves in words, a line each; empty if all are right.
 std::string worst_curves(const Evaluation& evaluation);

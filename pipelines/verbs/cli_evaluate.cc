@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "datasets/readers/scene.h"
@@ -22,7 +20,7 @@ namespace sketchsplat {
 namespace {
 
 struct EvaluateArguments {
-  std::string prediction, truth, json, out;
+  std::string prediction, truth, solid, json, out;
   Missing missing = Missing::kZero;
   int overlays = 0;
   EvaluateOptions options;
@@ -72,6 +70,8 @@ void check_usage(const EvaluateArguments& arguments) {
   if (arguments.overlays > 0 && arguments.out.empty()) {
     throw UsageError("--overlays needs --out, the folder to write them to");
   }
+  if (!arguments.solid.empty() && is_folder_of_scenes(arguments.truth))
+    throw UsageError("--solid is one solid, and --gt a folder of scenes");
   std::error_code none;
   if (arguments.overlays > 0 && fs::is_regular_file(arguments.truth, none)) {
     throw UsageError("--overlays needs the scene's folder as --gt, for its images");
@@ -87,11 +87,10 @@ void write_files(const EvaluateArguments& arguments, const std::string& json,
   write_text(arguments.out + "/strokes.csv", strokes_to_csv(scenes));
 }
 
-// The solid of a result folder against the part of a scene, if both are there.
-std::optional<SolidComparison> compare_solids(const EvaluateArguments& arguments,
+// The solid of a result folder, or of a file, against the part of a scene, if both are there.
+std::optional<SolidComparison> compare_solids(const std::string& solid, const std::string& scene,
                                               Progress* progress) {
-  const std::string solid = arguments.prediction + "/solid.step",
-                    part = arguments.truth + "/groundtruth/part.step";
+  const std::string part = scene + "/groundtruth/part.step";
   std::error_code none;
   if (!fs::exists(solid, none) || !fs::exists(part, none)) return std::nullopt;
   try {
@@ -102,24 +101,12 @@ std::optional<SolidComparison> compare_solids(const EvaluateArguments& arguments
   }
 }
 
-std::string with_solid(const std::string& json, const SolidComparison& c) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::parse(json);
-  all["solid"] = {{"volume", c.volume},
-                  {"true_volume", c.true_volume},
-                  {"iou", c.iou},
-                  {"face_precision", c.face_precision},
-                  {"face_recall", c.face_recall},
-                  {"face_f", c.face_f},
-                  {"largest_distance", c.largest_distance}};
-  return all.dump(1) + "\n";
-}
-
-std::string solid_row(const SolidComparison& c) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "solid  IoU %.4f  faces P %.1f  R %.1f  F %.1f  largest distance %.2g\n", c.iou,
-                100 * c.face_precision, 100 * c.face_recall, 100 * c.face_f, c.largest_distance);
-  return text;
+void check_solid(const EvaluateArguments& arguments) {
+  if (arguments.solid.empty()) return;
+  const std::string part = arguments.truth + "/groundtruth/part.step";
+  std::error_code none;
+  for (const std::string& path : {arguments.solid, part})
+    if (!fs::exists(path, none)) throw InputError(path, "a STEP file", "nothing");
 }
 
 void evaluate_one(const EvaluateArguments& arguments, Progress* progress) {
@@ -127,17 +114,17 @@ void evaluate_one(const EvaluateArguments& arguments, Progress* progress) {
   scene.name = fs::path(arguments.truth).lexically_normal().stem().string();
   scene.evaluation = evaluate(read_prediction(arguments.prediction),
                               find_ground_truth(arguments.truth), arguments.options);
-  const std::optional<SolidComparison> solid = compare_solids(arguments, progress);
-  const std::string json =
-      solid ? with_solid(to_json(scene.evaluation), *solid) : to_json(scene.evaluation);
-  write_files(arguments, json, {scene});
+  scene.evaluation.solid = compare_solids(
+      arguments.solid.empty() ? arguments.prediction + "/solid.step" : arguments.solid,
+      arguments.truth, progress);
+  write_files(arguments, to_json(scene.evaluation), {scene});
   if (arguments.overlays > 0) {
     write_worst(scene.evaluation, arguments.truth, arguments.out, arguments.overlays, progress);
   }
   if (on_stdout(arguments))
-    std::cout << json;
+    std::cout << to_json(scene.evaluation);
   else
-    std::cout << to_table(scene.evaluation) << (solid ? solid_row(*solid) : "")
+    std::cout << to_table(scene.evaluation) << solid_row(scene.evaluation)
               << worst_curves(scene.evaluation);
 }
 
@@ -151,6 +138,8 @@ void evaluate_folder(const EvaluateArguments& arguments, Progress* progress) {
       if (skip) continue;
     }
     results.push_back(evaluate_scene(scene, arguments.options));
+    results.back().evaluation.solid =
+        compare_solids(scene.prediction + "/solid.step", scene.truth, progress);
     if (arguments.overlays == 0) continue;
     const std::string out = arguments.out + "/" + scene.name;
     prepare_output_folder(out);
@@ -162,6 +151,7 @@ void evaluate_folder(const EvaluateArguments& arguments, Progress* progress) {
 
 void run_evaluate(const EvaluateArguments& arguments, Progress* progress) {
   check_usage(arguments);
+  check_solid(arguments);
   if (!arguments.out.empty()) prepare_output_folder(arguments.out);
   if (is_folder_of_scenes(arguments.truth)) {
     evaluate_folder(arguments, progress);
@@ -184,6 +174,8 @@ Verb evaluate_verb() {
       .required = true;
   f.choose("protocol", &arguments->options.protocol, {"sketchsplat", "emap", "curvegaussian"},
            "Whose way of sampling predictions");
+  f.add("solid", &arguments->solid, "FILE",
+        "A STEP file to compare with the scene's part, instead of solid.step of the result");
   f.choose("missing", &arguments->missing, {"zero", "skip"},
            "What a scene without a result counts, of several");
   f.add("json", &arguments->json, "FILE",
