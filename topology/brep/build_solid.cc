@@ -13,7 +13,7 @@ namespace sketchsplat::brep {
 namespace {
 
 // A share of the extent within which places are one; gaps that are larger are so, up to kMostNear.
-constexpr double kNear = 1e-6, kMostNear = 1e-4;
+constexpr double kNear = 1e-6, kMostNear = 5e-5;
 
 std::string of_face(size_t face, SurfaceKind kind) {
   return "face " + std::to_string(face) + ", a " + surface_name(kind) + ": ";
@@ -92,7 +92,7 @@ BuiltSolid build_solid(const Solid& solid, double extent) {
   check_indices(solid);
   EdgeTable edges(solid.edges, extent * kNear);
   // Poles and ends of seams are where curves end, up to what these lie beside their surfaces.
-  edges.set_near(std::clamp(10 * solid.gap, kNear * extent, kMostNear * extent));
+  edges.set_near(std::clamp(4 * solid.gap, kNear * extent, kMostNear * extent));
   std::vector<FacePlan> plans;
   const auto each = [&](const auto& make) {
     for (size_t f = 0; f < solid.faces.size(); ++f) {

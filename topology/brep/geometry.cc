@@ -113,7 +113,8 @@ Handle(Geom_Surface) cone(const Surface& s, const std::vector<Vector3d>& border)
   const double slope = radius < 0 ? -s.slope : s.slope;
   const Vector3d axis = slope > 0 ? s.axis : Vector3d(-s.axis);
   const Vector3d origin = s.origin + along * s.axis;
-  if (!(std::abs(radius) > 1e-9) || !(std::abs(slope) > 1e-9)) throw Refused("a cone has no slope");
+  if (!std::isfinite(radius + slope) || !(std::abs(radius) > 1e-9) || !(std::abs(slope) > 1e-9))
+    throw Refused("a cone has no slope");
   const gp_Ax3 frame(to_point(origin), to_direction(axis),
                      to_direction(step::plain_direction(axis)));
   return new Geom_ConicalSurface(frame, std::atan(std::abs(slope)), std::abs(radius));
@@ -146,9 +147,10 @@ EdgeCurve curve_of(const Sketch& sketch, int stroke, double flat) {
 
 Handle(Geom_Surface) surface_of(const Surface& s, const std::vector<Vector3d>& border) {
   const bool round = s.kind != SurfaceKind::kPlane && s.kind != SurfaceKind::kCone;
+  const auto is_length = [](double x) { return std::isfinite(x) && x > 1e-9; };
   if (!s.origin.allFinite() || !(std::abs(s.axis.norm() - 1) < 1e-6))
     throw Refused("a surface has no axis");
-  if (round && !(s.radius > 1e-9)) throw Refused("a surface has no radius");
+  if (round && !is_length(s.radius)) throw Refused("a surface has no radius");
   const Vector3d axis = s.kind == SurfaceKind::kSphere ? sphere_axis(s, border) : s.axis;
   const gp_Ax3 frame(to_point(s.origin), to_direction(axis),
                      to_direction(step::plain_direction(axis)));
@@ -162,7 +164,7 @@ Handle(Geom_Surface) surface_of(const Surface& s, const std::vector<Vector3d>& b
     case SurfaceKind::kSphere:
       return new Geom_SphericalSurface(frame, s.radius);
     case SurfaceKind::kTorus:
-      if (!(s.minor_radius > 1e-9) || !(s.minor_radius < s.radius))
+      if (!is_length(s.minor_radius) || !(s.minor_radius < s.radius))
         throw Refused("a torus runs through itself");
       return new Geom_ToroidalSurface(frame, s.radius, s.minor_radius);
   }
