@@ -5,6 +5,7 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom2d_Line.hxx>
+#include <Geom_Line.hxx>
 #include <Precision.hxx>
 #include <TopExp.hxx>
 #include <TopLoc_Location.hxx>
@@ -134,15 +135,19 @@ class FaceBuilder {
     for (size_t i = 0; i < uv.size(); ++i) {
       const Part& part = loop.parts[i];
       Use use{part.edge, nullptr, 0};
-      if (plan_.chart.flat())
-        use.gap = gap_to_plane(part.part);
-      else
+      // Of what lies in a plane OpenCASCADE finds the exact image itself.
+      if (plan_.chart.flat()) use.gap = gap_to_plane(part.part);
+      if (!plan_.chart.flat() || (use.gap > Precision::Confusion() && !is_line(part.part)))
         use.curve = curve_in_chart(plan_.chart, part.part, uv[i], &use.gap);
       uses->push_back(use);
       if (loop.trace.pole[i] < 0) continue;
       const double to = i + 1 < uv.size() ? uv[i + 1](0, 0) : loop.trace.end[0];
       uses->push_back(pole_edge(loop.trace.pole[i], uv[i](0, uv[i].cols() - 1), to, part.end));
     }
+  }
+
+  static bool is_line(const CurvePart& part) {
+    return !Handle(Geom_Line)::DownCast(part.curve).IsNull();
   }
 
   double gap_to_plane(const CurvePart& part) const {
@@ -270,7 +275,7 @@ class FaceBuilder {
     const TopLoc_Location none;
     const Handle(Geom_Surface)& surface = plan_.chart.surface();
     const double gap = std::max(use.gap, other ? other->gap : 0) * kPad;
-    if (plan_.chart.flat()) {
+    if (use.curve.IsNull()) {
       builder_.UpdateEdge(use.edge, std::max(gap, Precision::Confusion()));
     } else if (other) {
       const bool forward = use.edge.Orientation() == TopAbs_FORWARD;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "topology/brep/check.h"
 
-#include <BOPAlgo_ArgumentAnalyzer.hxx>
-#include <BOPAlgo_CheckResult.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepCheck.hxx>
 #include <BRepCheck_Analyzer.hxx>
@@ -13,9 +11,7 @@
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
-#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shell.hxx>
@@ -39,12 +35,6 @@ double area_of(const TopoDS_Shape& shape) {
   GProp_GProps properties;
   BRepGProp::SurfaceProperties(shape, properties);
   return properties.Mass();
-}
-
-std::string kind_of(const TopoDS_Shape& shape) {
-  constexpr const char* kNames[] = {"compound", "compsolid", "solid", "shell",
-                                    "face",     "wire",      "edge",  "vertex"};
-  return kNames[int(shape.ShapeType())];
 }
 
 // "BRepCheck_UnorientableShape" as "UnorientableShape"; empty if there is no error.
@@ -93,36 +83,6 @@ std::string orient(BuiltSolid* built) {
   return "";
 }
 
-std::string name_of(const TopoDS_Shape& faulty, const Solid& solid, const BuiltSolid& built) {
-  for (size_t f = 0; f < built.faces.size(); ++f) {
-    TopTools_IndexedMapOfShape parts;
-    TopExp::MapShapes(built.faces[f], parts);
-    if (!parts.Contains(faulty)) continue;
-    const std::string face = "face " + std::to_string(f) + ", a " +
-                             surface_name(solid.surfaces[solid.faces[f].surface].kind);
-    return faulty.ShapeType() == TopAbs_FACE ? face : kind_of(faulty) + " of " + face;
-  }
-  return kind_of(faulty);
-}
-
-// Faces, edges and vertices that meet where they share nothing.
-std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance) {
-  BOPAlgo_ArgumentAnalyzer analyzer;
-  analyzer.SetShape1(built.shape);
-  analyzer.ArgumentTypeMode() = false;
-  analyzer.SelfInterMode() = true;
-  analyzer.SetFuzzyValue(tolerance);
-  analyzer.Perform();
-  for (const BOPAlgo_CheckResult& result : analyzer.GetCheckResult()) {
-    if (result.GetCheckStatus() != BOPAlgo_SelfIntersect) continue;
-    std::string who;
-    for (const TopoDS_Shape& shape : result.GetFaultyShapes1())
-      who += (who.empty() ? "" : " and ") + name_of(shape, solid, built);
-    return "it runs through itself: " + who;
-  }
-  return "";
-}
-
 std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
                     const BuiltSolid& built) {
   if (!(check.tolerance <= kMostTolerance * extent)) {
@@ -140,6 +100,12 @@ std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
 }
 
 }  // namespace
+
+std::string kind_of(const TopoDS_Shape& shape) {
+  constexpr const char* kNames[] = {"compound", "compsolid", "solid", "shell",
+                                    "face",     "wire",      "edge",  "vertex"};
+  return kNames[int(shape.ShapeType())];
+}
 
 std::string fault_of(const TopoDS_Shape& shape) {
   const BRepCheck_Analyzer analyzer(shape);

@@ -16,6 +16,11 @@ SolidCheck check_solid(const Solid& solid, double extent, BuiltSolid* built);
 /// What BRepCheck_Analyzer finds first, as a clause; empty if the shape is valid.
 std::string fault_of(const TopoDS_Shape& shape);
 
+/// Where it runs through itself beyond the tolerances, as a clause; empty if it does not.
+std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance);
+
+std::string kind_of(const TopoDS_Shape& shape);  ///< "face", "edge", ...
+
 /// Largest tolerance of an edge or a vertex.
 double tolerance_of(const TopoDS_Shape& shape);
 

@@ -98,7 +98,7 @@ Handle(Geom2d_Curve)
     curve_in_chart(const Chart& chart, const CurvePart& part, const Matrix2Xd& uv, double* gap) {
   const Tracer uv_at(chart, part, uv);
   constexpr int kCheck = 4 * 64 + 1;  // no multiple of the steps below: between their points, too
-  const double enough = 1.5 * uv_at.gap(nullptr, kCheck) + 2 * Precision::Confusion();
+  const double enough = 1.5 * uv_at.gap(nullptr, kCheck) + 0.05 * Precision::Confusion();
   const Handle(Geom2d_Line) line = isoline(part, uv_at);
   double off = line.IsNull() ? 0 : uv_at.gap(line.get(), kCheck);
   if (!line.IsNull() && off <= enough) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "topology/brep/face_plan.h"
 
+#include <Geom_ElementarySurface.hxx>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -180,6 +181,29 @@ void check_poles(int below, int above, bool all_around, const FacePlan& plan) {
   if (above == 0 && !pole(1)) throw Refused(pole(0) ? kWrongWay : kNotOne);
 }
 
+// Turns the frame of the surface so that its own seam, where u is 0, lies on the face's or opposite
+// of the face: algorithms of OpenCASCADE are best there.
+void turn_frame(const std::vector<TracedLoop>& loops, FacePlan* plan, double near) {
+  double turn = plan->at;
+  if (plan->chart.flat()) return;
+  if (!plan->seam || plan->winds_in_v) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const TracedLoop& loop : loops) {
+      if (plan->outer >= 0 && &loop != &loops[size_t(plan->outer)]) continue;
+      for (const Matrix2Xd& uv : loop.trace.uv) {
+        low = std::min(low, uv.row(0).minCoeff());
+        high = std::max(high, uv.row(0).maxCoeff());
+      }
+    }
+    turn = (low + high) / 2 - M_PI;
+  } else {
+    plan->at = 0;
+  }
+  const auto surface = Handle(Geom_ElementarySurface)::DownCast(plan->chart.surface()->Copy());
+  surface->Rotate(surface->Axis(), turn);
+  plan->chart = Chart(surface, near);
+}
+
 }  // namespace
 
 Vector2d upright(const FacePlan& plan, const Vector2d& uv) {
@@ -223,10 +247,12 @@ FacePlan plan_face(const Solid& solid, const SolidFace& face, EdgeTable* edges) 
     return plan;
   }
   if (positive > 1 || (positive == 1 && below + above > 0)) throw Refused(kNotOne);
-  if (positive == 1) return plan;
-  check_poles(below, above, below + above == 0, plan);
-  plan.seam = true;
-  place_seam(traced, &plan, edges);
+  if (positive == 0) {
+    check_poles(below, above, below + above == 0, plan);
+    plan.seam = true;
+    place_seam(traced, &plan, edges);
+  }
+  turn_frame(traced, &plan, edges->near());
   return plan;
 }
 
