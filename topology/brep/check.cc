@@ -25,12 +25,6 @@ namespace {
 
 constexpr double kMostTolerance = 1e-4;  // of the extent
 
-double volume_of(const TopoDS_Shape& shape) {
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(shape, properties);
-  return properties.Mass();
-}
-
 double area_of(const TopoDS_Shape& shape) {
   GProp_GProps properties;
   BRepGProp::SurfaceProperties(shape, properties);
@@ -100,6 +94,12 @@ std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
 }
 
 }  // namespace
+
+double volume_of(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties);
+  return properties.Mass();
+}
 
 std::string kind_of(const TopoDS_Shape& shape) {
   constexpr const char* kNames[] = {"compound", "compsolid", "solid", "shell",

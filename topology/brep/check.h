@@ -21,6 +21,8 @@ std::string self_intersection(const Solid& solid, const BuiltSolid& built, doubl
 
 std::string kind_of(const TopoDS_Shape& shape);  ///< "face", "edge", ...
 
+double volume_of(const TopoDS_Shape& shape);  ///< negative of one that looks inwards
+
 /// Largest tolerance of an edge or a vertex.
 double tolerance_of(const TopoDS_Shape& shape);
 

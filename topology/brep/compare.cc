@@ -1,171 +1,152 @@
 // SPDX-License-Identifier: MIT
 #include "topology/brep/compare.h"
 
-#include <BRepAdaptor_Surface.hxx>
-#include <BRepBndLib.hxx>
-#include <BRepBuilderAPI_MakeVertex.hxx>
-#include <BRepClass3d_SolidClassifier.hxx>
-#include <BRepExtrema_DistShapeShape.hxx>
-#include <BRepGProp.hxx>
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
-#include <Bnd_Box.hxx>
-#include <GProp_GProps.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
-#include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <vector>
 
 #include "datasets/types/errors.h"
+#include "topology/brep/check.h"
+#include "topology/brep/meshed_face.h"
+#include "topology/brep/overlap.h"
 
 namespace sketchsplat {
 namespace {
 
-constexpr int kPlaces = 30000;
-constexpr double kNear = 5e-3;  // of the longest side
-constexpr double kShare = 0.9;  // of a face's places
-constexpr int kPlacesPerFace = 24;
+using brep::MeshedFace;
+using Eigen::Vector3d;
 
-struct Part {
-  TopoDS_Shape solid;
-  std::vector<TopoDS_Face> faces;
-  std::vector<std::vector<gp_Pnt>> places;                 // of every face
-  std::map<GeomAbs_SurfaceType, TopoDS_Compound> of_kind;  // the faces of every kind
-  TopoDS_Compound all;
-};
+constexpr double kDeflection = 1e-4;  // of the longest side
+constexpr double kNear = 5e-3;        // of the longest side
+constexpr double kShare = 0.9;        // of a face's area
+constexpr double kSpacing = 0.02;     // of places, of the longest side
+constexpr size_t kMostPoints = 1000;  // of the mesh of a face that are places, too
+constexpr int kLeastPlaces = 32;      // of a face
+constexpr double kPlausible = 5e-3;   // between the IoU of a boolean operation and that of lines
+constexpr double kHuge = std::numeric_limits<double>::max();
 
-GeomAbs_SurfaceType kind_of(const TopoDS_Face& face) { return BRepAdaptor_Surface(face).GetType(); }
-
-// Middles of triangles, spread over the face.
-std::vector<gp_Pnt> places_on(const TopoDS_Face& face) {
-  TopLoc_Location where;
-  const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, where);
-  std::vector<gp_Pnt> places;
-  if (mesh.IsNull()) return places;
-  const int n = mesh->NbTriangles(), used = std::min(n, kPlacesPerFace);
-  for (int k = 0; k < used; ++k) {
-    int corner[3];
-    mesh->Triangle(1 + int((k + 0.5) * n / used)).Get(corner[0], corner[1], corner[2]);
-    gp_XYZ sum(0, 0, 0);
-    for (const int c : corner) sum += mesh->Node(c).XYZ();
-    places.push_back(gp_Pnt(sum / 3).Transformed(where.Transformation()));
-  }
-  return places;
-}
-
-TopoDS_Shape read_solid(const std::string& path) {
+// All solids of a file.
+TopoDS_Shape read_solids(const std::string& path) {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   STEPControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     throw InputError(path, "a STEP file", "something else");
   reader.TransferRoots();
-  TopExp_Explorer solids(reader.OneShape(), TopAbs_SOLID);
-  if (!solids.More()) throw InputError(path, "a solid", "none");
-  return solids.Current();
+  const TopoDS_Shape all = reader.OneShape();
+  std::vector<TopoDS_Shape> solids;
+  if (!all.IsNull())
+    for (TopExp_Explorer it(all, TopAbs_SOLID); it.More(); it.Next())
+      solids.push_back(it.Current());
+  if (solids.empty()) throw InputError(path, "a solid", "none");
+  if (solids.size() == 1) return solids[0];
+  TopoDS_Compound compound;
+  const BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const TopoDS_Shape& solid : solids) builder.Add(compound, solid);
+  return compound;
 }
 
-Part part_of(const TopoDS_Shape& solid, double deflection) {
-  Part part;
-  part.solid = solid;
-  BRepMesh_IncrementalMesh(solid, deflection);
-  BRep_Builder builder;
-  builder.MakeCompound(part.all);
-  for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
-    const TopoDS_Face face = TopoDS::Face(it.Current());
-    const auto [kind, first] = part.of_kind.emplace(kind_of(face), TopoDS_Compound());
-    if (first) builder.MakeCompound(kind->second);
-    builder.Add(kind->second, face);
-    builder.Add(part.all, face);
-    part.faces.push_back(face);
-    part.places.push_back(places_on(face));
+bool is_valid(const TopoDS_Shape& shape) {
+  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next())
+    if (!BRep_Tool::IsClosed(it.Current())) return false;
+  return brep::fault_of(shape).empty();
+}
+
+double longest_side(const TopoDS_Shape& shape) {
+  Eigen::AlignedBox3d box;
+  for (const MeshedFace& face : brep::mesh_faces(shape, 1.0)) box.extend(face.box());
+  return box.isEmpty() ? 0 : box.sizes().maxCoeff();
+}
+
+double distance(const Vector3d& p, const std::vector<MeshedFace>& faces,
+                const GeomAbs_SurfaceType* kind, double bound) {
+  double least = bound;
+  for (const MeshedFace& face : faces)
+    if ((!kind || face.kind() == *kind) && face.box().exteriorDistance(p) < least)
+      least = std::min(least, face.distance(p, least));
+  return least;
+}
+
+bool is_right(const MeshedFace& face, const std::vector<MeshedFace>& others, double side) {
+  const GeomAbs_SurfaceType kind = face.kind();
+  const std::vector<Vector3d> places = face.places(kSpacing * side, kLeastPlaces);
+  const auto near = std::count_if(places.begin(), places.end(), [&](const Vector3d& p) {
+    return distance(p, others, &kind, 2 * kNear * side) <= kNear * side;
+  });
+  return !places.empty() && double(near) >= kShare * double(places.size());
+}
+
+double share_right(const std::vector<MeshedFace>& faces, const std::vector<MeshedFace>& others,
+                   double side) {
+  if (faces.empty()) return 0;
+  return double(std::count_if(faces.begin(), faces.end(),
+                              [&](const auto& face) { return is_right(face, others, side); })) /
+         double(faces.size());
+}
+
+// Over places inside of the faces and on their borders, where the largest are.
+double largest_distance(const std::vector<MeshedFace>& faces, const std::vector<MeshedFace>& others,
+                        double side) {
+  double most = 0;
+  for (const MeshedFace& face : faces) {
+    std::vector<Vector3d> places = face.places(kSpacing * side, kLeastPlaces);
+    const std::vector<Vector3d>& points = face.points();  // those of the border first
+    const size_t step = 1 + points.size() / kMostPoints;
+    for (size_t i = 0; i < points.size(); i += step) places.push_back(points[i]);
+    for (const Vector3d& p : places) most = std::max(most, distance(p, others, nullptr, kHuge));
   }
-  return part;
+  return most;
 }
 
-double distance(const gp_Pnt& place, const TopoDS_Shape& shape) {
-  const BRepExtrema_DistShapeShape d(BRepBuilderAPI_MakeVertex(place).Vertex(), shape);
-  return d.IsDone() ? d.Value() : HUGE_VAL;
+void compare_volumes(const TopoDS_Shape& solid, const TopoDS_Shape& truth,
+                     const std::vector<MeshedFace>& faces,
+                     const std::vector<MeshedFace>& true_faces, SolidComparison* out) {
+  out->volume = brep::volume_of(solid);
+  out->true_volume = brep::volume_of(truth);
+  // Of solids that all but coincide, boolean operations may be wrong without a word.
+  const double by_lines = brep::overlap_by_lines(faces, true_faces);
+  const double exact = brep::overlap_by_boolean(solid, truth);
+  out->iou_is_exact = exact >= 0 && std::abs(exact - by_lines) <= kPlausible;
+  out->iou = out->iou_is_exact ? std::min(exact, 1.0) : by_lines;
 }
 
-// Share of the faces of one part that lie on those of the other; raises the largest distance.
-double faces_found(const Part& part, const Part& other, double near, double* largest) {
-  int right = 0;
-  for (size_t f = 0; f < part.faces.size(); ++f) {
-    const auto same = other.of_kind.find(kind_of(part.faces[f]));
-    int on = 0;
-    for (const gp_Pnt& place : part.places[f]) {
-      *largest = std::max(*largest, distance(place, other.all));
-      on += same != other.of_kind.end() && distance(place, same->second) <= near;
-    }
-    right += !part.places[f].empty() && on >= kShare * part.places[f].size();
-  }
-  return part.faces.empty() ? 0 : double(right) / part.faces.size();
-}
-
-double volume_of(const TopoDS_Shape& shape) {
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(shape, properties);
-  return std::abs(properties.Mass());
-}
-
-Bnd_Box box_of(const TopoDS_Shape& shape) {
-  Bnd_Box box;
-  BRepBndLib::Add(shape, box);
-  return box;
-}
-
-// Boolean operations of parts that all but coincide are not to be relied upon; places are.
-double intersection_over_union(const TopoDS_Shape& a, const TopoDS_Shape& b) {
-  Bnd_Box box = box_of(a);
-  box.Add(box_of(b));
-  const gp_XYZ low = box.CornerMin().XYZ(), size = box.CornerMax().XYZ() - low;
-  BRepClass3d_SolidClassifier in_a(a), in_b(b);
-  int both = 0, either = 0;
-  for (int i = 0; i < kPlaces; ++i) {
-    // Roberts' sequence of even spread: no plane of the part holds many of its points.
-    const gp_XYZ share(std::fmod(0.5 + i * 0.8191725133961645, 1.0),
-                       std::fmod(0.5 + i * 0.6710436067037893, 1.0),
-                       std::fmod(0.5 + i * 0.5497004779019703, 1.0));
-    const gp_Pnt place(low + share.Multiplied(size));
-    in_a.Perform(place, 1e-9);
-    in_b.Perform(place, 1e-9);
-    const bool a_holds = in_a.State() == TopAbs_IN, b_holds = in_b.State() == TopAbs_IN;
-    both += a_holds && b_holds;
-    either += a_holds || b_holds;
-  }
-  return either > 0 ? double(both) / either : 0;
+SolidComparison compare(const TopoDS_Shape& solid, const TopoDS_Shape& truth) {
+  const double side = longest_side(truth);
+  const std::vector<MeshedFace> faces = brep::mesh_faces(solid, kDeflection * side),
+                                true_faces = brep::mesh_faces(truth, kDeflection * side);
+  SolidComparison out;
+  out.valid = is_valid(solid);
+  out.faces = int(faces.size());
+  out.true_faces = int(true_faces.size());
+  compare_volumes(solid, truth, faces, true_faces, &out);
+  out.face_precision = share_right(faces, true_faces, side);
+  out.face_recall = share_right(true_faces, faces, side);
+  const double sum = out.face_precision + out.face_recall;
+  out.face_f = sum > 0 ? 2 * out.face_precision * out.face_recall / sum : 0;
+  out.to_truth = largest_distance(faces, true_faces, side);
+  out.from_truth = largest_distance(true_faces, faces, side);
+  out.largest_distance = std::max(out.to_truth, out.from_truth);
+  return out;
 }
 
 }  // namespace
 
 SolidComparison compare_solids(const std::string& path, const std::string& true_path) {
   try {
-    const TopoDS_Shape solid = read_solid(path), truth = read_solid(true_path);
-    const gp_XYZ size = box_of(truth).CornerMax().XYZ() - box_of(truth).CornerMin().XYZ();
-    const double side = std::max({size.X(), size.Y(), size.Z()});
-    const Part a = part_of(solid, 1e-3 * side), b = part_of(truth, 1e-3 * side);
-    SolidComparison out;
-    out.volume = volume_of(solid);
-    out.true_volume = volume_of(truth);
-    out.iou = intersection_over_union(solid, truth);
-    out.face_precision = faces_found(a, b, kNear * side, &out.largest_distance);
-    out.face_recall = faces_found(b, a, kNear * side, &out.largest_distance);
-    const double sum = out.face_precision + out.face_recall;
-    out.face_f = sum > 0 ? 2 * out.face_precision * out.face_recall / sum : 0;
-    return out;
+    return compare(read_solids(path), read_solids(true_path));
   } catch (const Standard_Failure& failure) {
-    throw InputError(path, "solids that can be compared",
-                     failure.GetMessageString() ? failure.GetMessageString() : "");
+    const char* message = failure.GetMessageString();
+    throw InputError(path, "solids that can be compared", message ? message : "others");
   }
 }
 
