@@ -131,6 +131,26 @@ TEST(FindSolid, NoiseLeavesNoGaps) {
   EXPECT_NEAR(volume_of(sketch), 1 - 0.5 * M_PI * 0.0625, 2e-3);
 }
 
+// Curves that a coarse tolerance lets stand off their surfaces are moved onto them; no surface may
+// turn inside out on the way.
+TEST(FindSolid, CoarseCurvesMoveOntoTheirSurfaces) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    Sketch sketch = plate_with_hole(0.5).edges;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, 1.5e-3);
+    for (int i = 0; i < sketch.nodes.cols(); ++i)
+      for (int k = 0; k < 3; ++k) sketch.nodes(k, i) += noise(random);
+    SolidOptions options;
+    options.tolerance = 4e-3;
+    options.margin = 1;
+    const SolidSearch search = find_solid(sketch, options);
+    if (!search.solid) continue;  // noise may be too much for a plane
+    const SolidCheck check = write_solid_step(*search.solid, "");
+    EXPECT_TRUE(check.valid) << check.why;
+    EXPECT_NEAR(check.volume, 1 - 0.5 * M_PI * 0.0625, 0.02);
+  }
+}
+
 TEST(FindSolid, OrderRotationAndScaleDoNotMatter) {
   const Sketch sketch = tongue_edges();
   Sketch other;

@@ -28,9 +28,12 @@ Unknowns unknowns_of(const Surface& s) {
 
 void copy_back(const Unknowns& u, Surface* s) {
   s->origin = Vector3d(u[0], u[1], u[2]);
-  s->axis = Vector3d(u[3], u[4], u[5]).normalized();
+  // A plane's distances do not tell its sides apart, so that a long step may turn its axis about;
+  // which side is outside hangs on it.
+  const double sign = s->axis.dot(Vector3d(u[3], u[4], u[5])) < 0 ? -1 : 1;
+  s->axis = sign * Vector3d(u[3], u[4], u[5]).normalized();
   s->radius = u[6];
-  s->slope = u[7];
+  s->slope = sign * u[7];
   s->minor_radius = u[8];
 }
 
