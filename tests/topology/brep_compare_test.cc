@@ -25,8 +25,9 @@ SolidComparison compare(const Solid& solid, const Solid& truth) {
 }
 
 TEST(BrepCompare, ASolidIsItself) {
-  std::vector<Solid> solids = some_solids();
-  solids.push_back(sphere_solid());
+  const std::vector<Solid> solids = {
+      plate_with_hole(0.5), cone_solid(0), ball_octant(), elbow(), cut_rod(),
+      half_cone(),          sphere_solid()};
   for (size_t i = 0; i < solids.size(); ++i) {
     const SolidComparison c = compare(solids[i], solids[i]);
     EXPECT_TRUE(c.valid) << i;
@@ -60,6 +61,16 @@ TEST(BrepCompare, LinesSayWhatTheBooleanOperationSays) {
     EXPECT_NEAR(c.iou, 1 / std::pow(1 + off, 3), 2e-3) << off;
     EXPECT_EQ(c.face_f, 1) << off;
     EXPECT_NEAR(c.largest_distance, off * std::sqrt(5.25), 2e-4) << off;
+  }
+}
+
+TEST(BrepCompare, SmallAndLargePartsAreTheSame) {
+  for (const double size : {1e-3, 1e5}) {
+    const SolidComparison c = compare(scaled(box_solid({0.2, 0, 0}, {1.2, 1, 1}), size),
+                                      scaled(box_solid({0, 0, 0}, {1, 1, 1}), size));
+    EXPECT_NEAR(c.iou, 0.8 / 1.2, 1e-3) << size;
+    EXPECT_NEAR(c.largest_distance / size, 0.2, 1e-3) << size;
+    EXPECT_NEAR(c.volume / std::pow(size, 3), 1, 1e-3) << size;
   }
 }
 

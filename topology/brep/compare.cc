@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "topology/brep/compare.h"
 
+#include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
@@ -12,6 +15,7 @@
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <cmath>
+#include <gp_Trsf.hxx>
 #include <limits>
 #include <vector>
 
@@ -62,10 +66,19 @@ bool is_valid(const TopoDS_Shape& shape) {
   return brep::fault_of(shape).empty();
 }
 
-double longest_side(const TopoDS_Shape& shape) {
-  Eigen::AlignedBox3d box;
-  for (const MeshedFace& face : brep::mesh_faces(shape, 1.0)) box.extend(face.box());
-  return box.isEmpty() ? 0 : box.sizes().maxCoeff();
+double longest_side(const TopoDS_Shape& shape, const std::string& path) {
+  Bnd_Box box;
+  BRepBndLib::AddOptimal(shape, box, /*useTriangulation=*/false, /*useShapeTolerance=*/false);
+  if (box.IsVoid() || box.IsOpen()) throw InputError(path, "a solid with an end", "none");
+  const gp_XYZ size = box.CornerMax().XYZ() - box.CornerMin().XYZ();
+  return std::max({size.X(), size.Y(), size.Z()});
+}
+
+// OpenCASCADE's tolerances are absolute, meant for parts of some hundred units.
+TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor) {
+  gp_Trsf scale;
+  scale.SetScaleFactor(factor);
+  return BRepBuilderAPI_Transform(shape, scale, /*theCopyGeom=*/true).Shape();
 }
 
 double distance(const Vector3d& p, const std::vector<MeshedFace>& faces,
@@ -120,8 +133,7 @@ void compare_volumes(const TopoDS_Shape& solid, const TopoDS_Shape& truth,
   out->iou = out->iou_is_exact ? std::min(exact, 1.0) : by_lines;
 }
 
-SolidComparison compare(const TopoDS_Shape& solid, const TopoDS_Shape& truth) {
-  const double side = longest_side(truth);
+SolidComparison compare(const TopoDS_Shape& solid, const TopoDS_Shape& truth, double side) {
   const std::vector<MeshedFace> faces = brep::mesh_faces(solid, kDeflection * side),
                                 true_faces = brep::mesh_faces(truth, kDeflection * side);
   SolidComparison out;
@@ -143,7 +155,15 @@ SolidComparison compare(const TopoDS_Shape& solid, const TopoDS_Shape& truth) {
 
 SolidComparison compare_solids(const std::string& path, const std::string& true_path) {
   try {
-    return compare(read_solids(path), read_solids(true_path));
+    const TopoDS_Shape solid = read_solids(path), truth = read_solids(true_path);
+    const double factor = std::exp2(7 - std::ceil(std::log2(longest_side(truth, true_path))));
+    const TopoDS_Shape large = scaled(truth, factor);
+    SolidComparison out = compare(scaled(solid, factor), large, longest_side(large, true_path));
+    out.volume /= factor * factor * factor;
+    out.true_volume /= factor * factor * factor;
+    for (double* length : {&out.to_truth, &out.from_truth, &out.largest_distance})
+      *length /= factor;
+    return out;
   } catch (const Standard_Failure& failure) {
     const char* message = failure.GetMessageString();
     throw InputError(path, "solids that can be compared", message ? message : "others");

@@ -50,7 +50,10 @@ double distance(const gp_Pnt& p, const BRepAdaptor_Curve& curve) {
   double low = std::max(0, best - 1), high = std::min(kSteps, best + 1);
   for (int i = 0; i < 60; ++i) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
-    (off(a) < off(b) ? high : low) = off(a) < off(b) ? b : a;
+    if (off(a) < off(b))
+      high = b;
+    else
+      low = a;
   }
   return off((low + high) / 2);
 }
