@@ -26,13 +26,11 @@ struct Round {
 };
 
 std::optional<Round> round_of(const Sketch& sketch, int stroke) {
-  const ControlPoints c = control_points(sketch, stroke);
-  if (sketch.strokes[stroke].kind == StrokeKind::kCircle)
-    return Round{stroke, c.p[0], c.p[1].normalized(), c.p[1].norm()};
-  if (sketch.strokes[stroke].kind != StrokeKind::kArc) return std::nullopt;
-  const ArcFrame<double> f = arc_frame<double>(c.p[0], c.p[1], c.p[2]);
-  if (f.straight) return std::nullopt;
-  return Round{stroke, f.middle + f.up * (f.sagitta - f.radius), f.along.cross(f.up), f.radius};
+  const StrokeKind kind = sketch.strokes[stroke].kind;
+  if (kind != StrokeKind::kCircle && kind != StrokeKind::kArc) return std::nullopt;
+  const CircleParameters circle = circle_parameters(sketch, stroke);
+  if (circle.straight) return std::nullopt;
+  return Round{stroke, circle.centre, circle.normal, circle.radius};
 }
 
 bool lies_on(const Surface& surface, const Matrix3Xd& polyline, double tolerance) {
