@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/graph/solid.h"
 
-#include <Eigen/Geometry>
-#include <cmath>
-
 namespace sketchsplat {
 
 using Eigen::Vector3d;
@@ -13,25 +10,9 @@ const char* surface_name(SurfaceKind kind) {
   return kNames[int(kind)];
 }
 
-double surface_distance(const Surface& surface, const Vector3d& point) {
-  const Vector3d x = point - surface.origin;
-  const double along = x.dot(surface.axis);
-  const double away = (x - along * surface.axis).norm();
-  switch (surface.kind) {
-    case SurfaceKind::kPlane:
-      return along;
-    case SurfaceKind::kCylinder:
-      return away - surface.radius;
-    case SurfaceKind::kCone:
-      // Beyond the apex the radius is counted on.
-      return (away - std::abs(surface.radius + surface.slope * along)) /
-             std::hypot(1.0, surface.slope);
-    case SurfaceKind::kSphere:
-      return x.norm() - surface.radius;
-    case SurfaceKind::kTorus:
-      return std::hypot(away - surface.radius, along) - surface.minor_radius;
-  }
-  return 0;
+double surface_distance(const Surface& s, const Vector3d& point) {
+  return surface_distance<double>(s.kind, s.origin, s.axis, s.radius, s.slope, s.minor_radius,
+                                  point);
 }
 
 Solid scaled(Solid solid, double factor) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "sketches/graph/face.h"
@@ -54,6 +55,26 @@ struct Solid {
 
 /// Signed distance [world units] of a point from a surface: positive on the side of its normal,
 /// which points away from the axis, the centre or the circle of centres; of a plane along its axis.
+/// Beyond the apex of a cone the radius is counted on. The first form takes the parameters as
+/// scalars, for solvers that ask for derivatives.
+template <typename T>
+T surface_distance(SurfaceKind kind, const Eigen::Matrix<T, 3, 1>& origin,
+                   const Eigen::Matrix<T, 3, 1>& axis, const T& radius, const T& slope,
+                   const T& minor_radius, const Eigen::Matrix<T, 3, 1>& point) {
+  using std::abs;
+  using std::sqrt;
+  const Eigen::Matrix<T, 3, 1> from = point - origin;
+  const T along = from.dot(axis);
+  if (kind == SurfaceKind::kPlane) return along;
+  const T least(1e-300);  // under roots, which have no derivative at 0
+  if (kind == SurfaceKind::kSphere) return sqrt(from.squaredNorm() + least) - radius;
+  const T out = sqrt((from - axis * along).squaredNorm() + least);
+  if (kind == SurfaceKind::kCylinder) return out - radius;
+  if (kind == SurfaceKind::kCone)
+    return (out - abs(radius + slope * along)) / sqrt(T(1) + slope * slope);
+  const T ring = out - radius;
+  return sqrt(ring * ring + along * along + least) - minor_radius;
+}
 double surface_distance(const Surface& surface, const Eigen::Vector3d& point);
 
 /// The same solid, larger by a factor > 0 about the origin.

@@ -41,23 +41,6 @@ void copy_back(const Unknowns& u, Surface* s) {
 // measured gives way by about the square of this over one.
 constexpr double kHard = 1e4;
 
-// surface_distance() with derivatives.
-template <typename T>
-T signed_distance(SurfaceKind kind, const Vec3<T>& origin, const Vec3<T>& axis, const T& radius,
-                  const T& slope, const T& minor_radius, const Vec3<T>& point) {
-  using std::sqrt;
-  const Vec3<T> from = point - origin;
-  const T along = from.dot(axis);
-  if (kind == SurfaceKind::kPlane) return along;
-  if (kind == SurfaceKind::kSphere) return sqrt(from.squaredNorm() + T(1e-300)) - radius;
-  const T out = sqrt((from - axis * along).squaredNorm() + T(1e-300));
-  if (kind == SurfaceKind::kCylinder) return out - radius;
-  if (kind == SurfaceKind::kCone)
-    return (out - radius - slope * along) / sqrt(T(1) + slope * slope);
-  const T ring = out - radius;
-  return sqrt(ring * ring + along * along + T(1e-300)) - minor_radius;
-}
-
 // Distances of places along a curve from a surface.
 struct OnSurface {
   StrokeKind kind;
@@ -74,7 +57,7 @@ struct OnSurface {
     for (size_t i = 0; i < t.size(); ++i) {
       evaluate_curve<T>(kind, control, t[i], &position, &derivative);
       residuals[i] =
-          T(kHard) * signed_distance<T>(surface, origin, axis, u[6], u[7], u[8], position);
+          T(kHard) * surface_distance<T>(surface, origin, axis, u[6], u[7], u[8], position);
     }
     return true;
   }
