@@ -33,8 +33,8 @@ class Programme {
     Cbc_addRow(model_.get(), "", int(columns.size()), columns.data(), factors.data(), sense, bound);
   }
   // Values of the columns at the least price.
-  std::vector<bool> solve(double seconds) {
-    Cbc_setParameter(model_.get(), "seconds", std::to_string(seconds).c_str());
+  std::vector<bool> solve(int nodes) {
+    Cbc_setParameter(model_.get(), "maxNodes", std::to_string(nodes).c_str());
     Cbc_solve(model_.get());
     if (!Cbc_isProvenOptimal(model_.get()))
       throw std::runtime_error("no choice of faces is proven to be the best");
@@ -97,7 +97,7 @@ void exclude(const ChosenCells& other, Programme* programme) {
 }  // namespace
 
 ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells>& others,
-                         double seconds) {
+                         int nodes) {
   const int cells = int(choice.cells.size()), strokes = int(choice.used_price.size());
   if (cells == 0) {  // nothing to choose, which the solver does not like
     ChosenCells none;
@@ -120,7 +120,7 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   for (const Cover& c : choice.covers) cover(c, &programme);
   for (const ChosenCells& other : others) exclude(other, &programme);
 
-  const std::vector<bool> values = programme.solve(seconds);
+  const std::vector<bool> values = programme.solve(nodes);
   ChosenCells out;
   out.cell.assign(values.begin(), values.begin() + cells);
   out.stroke.assign(values.begin() + cells, values.begin() + cells + strokes);

@@ -33,8 +33,9 @@ struct ChosenCells {
 /// The cheapest choice in which every edge has two faces: an integer programme, solved exactly. A
 /// stroke between two chosen cells of one surface, or between none, is no edge. Cells that are all
 /// chosen in one of the `other` choices, and no more, are not chosen again. Without any cells
-/// that close: no cells, which is a choice, too. Throws std::runtime_error if `seconds` are over.
+/// that close: no cells, which is a choice, too. Throws std::runtime_error if that takes more than
+/// so many nodes of the search tree: a count, so that any machine comes to the same end.
 ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells>& others,
-                         double seconds);
+                         int nodes);
 
 }  // namespace sketchsplat

@@ -110,7 +110,7 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   const CellChoice choice = price(all, tolerance, options, evidence, &weighed);
   out.surfaces = int(all.surfaces.size());
   out.cells = int(choice.cells.size());
-  const ChosenCells best = choose_cells(choice, {}, options.seconds);
+  const ChosenCells best = choose_cells(choice, {}, options.nodes);
   for (int s = 0; s < sketch.size(); ++s)
     if (!best.stroke[s]) out.doubtful.push_back(s);
   out.rays = int(evidence.rays.size());
@@ -119,7 +119,7 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   if (!assemble(all.sketch, all.inferred, all.polylines, all.surfaces, choice.cells, best, &solid,
                 &out.why))
     return out;
-  out.margin = choose_cells(choice, {best}, options.seconds).price - best.price;
+  out.margin = choose_cells(choice, {best}, options.nodes).price - best.price;
   if (!out.doubtful.empty()) {
     out.why = std::to_string(out.doubtful.size()) + " of " + std::to_string(sketch.size()) +
               " curves are no edge of the faces that close";

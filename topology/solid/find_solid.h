@@ -18,7 +18,7 @@ struct SolidOptions {
   double margin = 4;          ///< [nat] by which the second-best choice must be worse
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
-  double seconds = 10;  ///< for the choice
+  int nodes = 20000;  ///< of the search tree for the choice
   EvidencePrices evidence;
 };
 
