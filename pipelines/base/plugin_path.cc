@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/base/plugin_path.h"
 
+#include <dlfcn.h>
+
 #include <filesystem>
+#include <stdexcept>
 
 namespace sketchsplat {
 
@@ -13,6 +16,13 @@ std::string plugin_path(const std::string& file, const std::string& built) {
   for (const fs::path& folder : {bin, bin / ".." / "lib" / "sketchsplat"})
     if (!bin.empty() && fs::exists(folder / file, none)) return folder / file;
   return fs::path(built) / file;
+}
+
+const void* plugin_table(const std::string& file, const std::string& built, const char* symbol) {
+  void* library = ::dlopen(plugin_path(file, built).c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* get = library ? ::dlsym(library, symbol) : nullptr;
+  if (!get) throw std::runtime_error(file + " cannot be loaded: " + ::dlerror());
+  return reinterpret_cast<const void* (*)()>(get)();
 }
 
 }  // namespace sketchsplat

@@ -9,4 +9,8 @@ namespace sketchsplat {
 /// was built. If it is nowhere: the last of these.
 std::string plugin_path(const std::string& file, const std::string& built);
 
+/// The table of functions that a plug-in's `symbol`, a function without arguments, returns; the
+/// plug-in stays loaded. Throws std::runtime_error if it cannot be.
+const void* plugin_table(const std::string& file, const std::string& built, const char* symbol);
+
 }  // namespace sketchsplat
