@@ -40,7 +40,8 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // strokes, and these tell whether the cameras err; then rounds of drawing the strokes into the
 // views, moving them and simplifying the graph, until nothing changes; and the same once more with
 // what is found in the edgels that are left. With siblings of the part, their family's strokes,
-// moved onto the edgels, come first, and the rest is for edgels that are left.
+// moved onto the edgels, come first, and the rest is for edgels that are left. At last, the solid
+// that the strokes bound, if they tell one.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
