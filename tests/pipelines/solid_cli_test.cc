@@ -88,6 +88,66 @@ TEST_F(Solids, FilesThatAreNotThereAreBadInput) {
   EXPECT_THAT(broken.out, Not(HasSubstr("solid")));
 }
 
+// From images to a solid that is compared with the part, and what is left of it afterwards.
+class SolidsOfImages : public Solids {
+ protected:
+  void SetUp() override {
+    Solids::SetUp();
+    ASSERT_EQ(run("synthesize box-hole --views 16 --resolution 240 --outputs none --quiet --out '" +
+                  in_folder("scene") + "'")
+                  .status,
+              0);
+  }
+  int reconstruct(const std::string& name, const std::string& options) const {
+    return run("reconstruct '" + in_folder("scene") + "' --overlays 0 --quiet --out '" +
+               in_folder(name) + "' " + options)
+        .status;
+  }
+  json report(const std::string& name) const {
+    return json::parse(text_of_file(in_folder(name + "/report.json")))["solid"];
+  }
+};
+
+TEST_F(SolidsOfImages, AreThePartForAnyNumberOfThreads) {
+  ASSERT_EQ(reconstruct("one", "--solid require --threads 1"), 0);
+  ASSERT_EQ(reconstruct("three", "--threads 3"), 0);
+  EXPECT_EQ(text_of_file(in_folder("one/solid.step")), text_of_file(in_folder("three/solid.step")));
+  const json told = report("one");
+  EXPECT_EQ(told["written"], true);
+  EXPECT_EQ(told["faces"]["plane"], 6);
+  EXPECT_EQ(told["faces"]["cylinder"], 1);
+  EXPECT_EQ(told["mask_rays_contradicted"], 0);
+  const json solid =
+      compared(" --pred '" + in_folder("one") + "' --gt '" + in_folder("scene") + "'")["solid"];
+  EXPECT_EQ(solid["valid"], true);
+  EXPECT_GT(double(solid["iou"]), 0.99);
+  EXPECT_EQ(solid["face_f"], 1);
+  EXPECT_NEAR(double(solid["volume"]), double(told["volume"]), 1e-6);
+}
+
+TEST_F(SolidsOfImages, AreNotWrittenUnlessAskedFor) {
+  ASSERT_EQ(reconstruct("result", ""), 0);
+  ASSERT_TRUE(fs::exists(in_folder("result/solid.step")));
+  ASSERT_EQ(reconstruct("result", "--solid off"), 0);
+  EXPECT_FALSE(fs::exists(in_folder("result/solid.step"))) << "that of the run before is no result";
+  EXPECT_EQ(report("result")["written"], false);
+}
+
+TEST_F(Solids, ThatAreRequiredAndNotFoundAreTooLittleAfterAllElseIsWritten) {
+  const std::string scene = in_folder("scene"), result = in_folder("result");
+  ASSERT_EQ(run("synthesize ball-stud --views 16 --resolution 240 --outputs none --quiet --out '" +
+                scene + "'")
+                .status,
+            0);
+  const Outcome o = run("reconstruct '" + scene + "' --overlays 0 --quiet --solid require --out '" +
+                        result + "'");
+  EXPECT_EQ(o.status, kTooLittle) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("solid"));
+  EXPECT_TRUE(fs::exists(result + "/sketch.step"));
+  EXPECT_FALSE(fs::exists(result + "/solid.step"));
+  EXPECT_NE(json::parse(text_of_file(result + "/report.json"))["solid"]["why"], "");
+}
+
 TEST_F(Solids, AMeshHasNoPart) {
   std::ofstream mesh(in_folder("block.obj"));
   for (int k = 0; k < 8; ++k)
