@@ -22,10 +22,12 @@ done
 for example in "$source"/examples/*.cc; do
   [ "$(wc -l <"$example")" -le 30 ] || fail "$example has more than 30 lines"
 done
-cmake -S "$source/examples" -B "$folder/examples" -DCMAKE_PREFIX_PATH="$prefix" \
+generator=$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' "$build/CMakeCache.txt")  # the one that is here
+cmake -S "$source/examples" -B "$folder/examples" -G "$generator" -DCMAKE_PREFIX_PATH="$prefix" \
   -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build "$folder/examples" >/dev/null
-ldd "$folder/examples/from_folder" | grep -q "$prefix/lib/libsketchsplat" ||
+linked=$(ldd "$folder/examples/from_folder")
+[[ $linked == *"$prefix/lib/libsketchsplat"* ]] ||
   fail "the examples are not linked with what is installed"
 nm -DC --defined-only "$prefix"/lib/libsketchsplat.so | grep -E 'StrokeJudge|OpenMP|CLI::App::parse' &&
   fail "the library shows what is inside"
