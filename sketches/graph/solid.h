@@ -50,7 +50,10 @@ struct Solid {
   std::vector<bool> inferred;  ///< per stroke: no image shows it, the faces imply it
   std::vector<Surface> surfaces;
   std::vector<SolidFace> faces;
-  double gap = 0;  ///< largest distance of a curve from the surfaces that it bounds, world units
+  /// Largest distance of a curve from the surfaces that it bounds, world units. Of a curve whose
+  /// kind cannot lie on them (a cubic where round surfaces meet) only the ends count: it stands for
+  /// their intersection.
+  double gap = 0;
 };
 
 /// Signed distance [world units] of a point from a surface: positive on the side of its normal,

@@ -90,7 +90,7 @@ std::vector<std::vector<int>> connected(const Solid& solid) {
 
 BuiltSolid build_solid(const Solid& solid, double extent) {
   check_indices(solid);
-  EdgeTable edges(solid.edges, extent * kNear);
+  EdgeTable edges(solid, extent * kNear);
   // Poles and ends of seams are where curves end, up to what these lie beside their surfaces.
   edges.set_near(std::clamp(4 * solid.gap, kNear * extent, kMostNear * extent));
   std::vector<FacePlan> plans;

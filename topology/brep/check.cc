@@ -90,7 +90,7 @@ std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
   for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More(); it.Next())
     if (!BRep_Tool::IsClosed(it.Current())) return "its faces do not close";
   if (!(check.volume > 1e-9 * std::pow(extent, 3))) return "it has no volume";
-  return self_intersection(solid, built, check.tolerance);
+  return self_intersection(solid, built, check.tolerance, extent);
 }
 
 }  // namespace

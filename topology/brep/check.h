@@ -17,7 +17,8 @@ SolidCheck check_solid(const Solid& solid, double extent, BuiltSolid* built);
 std::string fault_of(const TopoDS_Shape& shape);
 
 /// Where it runs through itself beyond the tolerances, as a clause; empty if it does not.
-std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance);
+std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance,
+                              double extent);
 
 std::string kind_of(const TopoDS_Shape& shape);  ///< "face", "edge", ...
 

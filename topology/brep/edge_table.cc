@@ -27,12 +27,26 @@ TopoDS_Edge make_edge(const CurvePart& part, const TopoDS_Vertex& begin, const T
   return edge;
 }
 
+// Of every stroke, the surfaces of the faces that it bounds.
+std::vector<std::vector<int>> surfaces_beside(const Solid& solid) {
+  std::vector<std::vector<int>> out(solid.edges.size());
+  for (const SolidFace& face : solid.faces)
+    for (const Loop& loop : face.loops)
+      for (const LoopStroke& s : loop) out[s.stroke].push_back(face.surface);
+  return out;
+}
+
 }  // namespace
 
-EdgeTable::EdgeTable(const Sketch& sketch, double flat)
-    : nodes_(sketch.nodes), near_(flat), strokes_(sketch.size()) {
+EdgeTable::EdgeTable(const Solid& solid, double flat)
+    : nodes_(solid.edges.nodes), near_(flat), strokes_(solid.edges.size()) {
+  const Sketch& sketch = solid.edges;
+  const std::vector<std::vector<int>> beside = surfaces_beside(solid);
   for (int i = 0; i < sketch.size(); ++i) {
     strokes_[i].curve = curve_of(sketch, i, flat);
+    if (beside[i].size() == 2)
+      trace(sketch, i, flat, solid.surfaces[beside[i][0]], solid.surfaces[beside[i][1]],
+            &strokes_[i].curve);
     strokes_[i].begin = sketch.strokes[i].begin;
     strokes_[i].end = sketch.strokes[i].end;
   }

@@ -12,8 +12,8 @@ namespace sketchsplat::brep {
 /// The strokes of a solid as edges that faces share; seams may cut them into several.
 class EdgeTable {
  public:
-  /// `flat`: sagitta of arcs that are lines.
-  EdgeTable(const Sketch& sketch, double flat);
+  /// `flat`: sagitta of arcs that are lines, and how far curves may be from their surfaces.
+  EdgeTable(const Solid& solid, double flat);
 
   /// Distance of places that are one.
   double near() const { return near_; }

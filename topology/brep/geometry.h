@@ -32,6 +32,11 @@ struct EdgeCurve {
 /// lines. Throws Refused if the stroke has no length.
 EdgeCurve curve_of(const Sketch& sketch, int stroke, double flat);
 
+/// Where two surfaces meet, along a stroke that lies beside them: a B-spline through many places of
+/// it. Nothing is changed if the stroke is closed, lies on both up to `near`, or is far from there.
+void trace(const Sketch& sketch, int stroke, double near, const Surface& a, const Surface& b,
+           EdgeCurve* curve);
+
 /// The surface as OpenCASCADE has it, its normal as Surface has it. A cone has its apex below its
 /// boundary, whose points are given; a sphere's poles keep away from them.
 /// Throws Refused if there is no such surface.

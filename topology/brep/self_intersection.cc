@@ -84,7 +84,9 @@ bool meet_elsewhere(const TopoDS_Shape& a, const TopoDS_Shape& b, double near) {
 
 }  // namespace
 
-std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance) {
+std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance,
+                              double extent) {
+  const double near = std::max(10 * tolerance, 1e-6 * extent);
   BOPAlgo_ArgumentAnalyzer analyzer;
   analyzer.SetShape1(built.shape);
   analyzer.ArgumentTypeMode() = false;
@@ -95,10 +97,9 @@ std::string self_intersection(const Solid& solid, const BuiltSolid& built, doubl
     if (result.GetCheckStatus() != BOPAlgo_SelfIntersect) continue;
     const std::vector<TopoDS_Shape> faulty(result.GetFaultyShapes1().begin(),
                                            result.GetFaultyShapes1().end());
-    constexpr double kTimes = 10;
     if (faulty.size() == 2 && faulty[0].ShapeType() == TopAbs_FACE &&
         faulty[1].ShapeType() == TopAbs_FACE &&
-        !meet_elsewhere(faulty[0], faulty[1], kTimes * tolerance))
+        !meet_elsewhere(faulty[0], faulty[1], near))
       continue;
     std::string who;
     for (const TopoDS_Shape& shape : faulty)

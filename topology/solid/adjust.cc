@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
 #include "topology/solid/surface.h"
 
@@ -41,11 +42,25 @@ void copy_back(const Unknowns& u, Surface* s) {
 // measured gives way by about the square of this over one.
 constexpr double kHard = 1e4;
 
+// Can a curve of this kind lie on a surface exactly? Cubics follow where round surfaces meet, and
+// arcs a hyperbola, as well as they can.
+bool fits(const Sketch& sketch, int stroke, const Surface& s) {
+  const StrokeKind kind = sketch.strokes[stroke].kind;
+  if (s.kind == SurfaceKind::kPlane || s.kind == SurfaceKind::kSphere) return true;
+  if (kind == StrokeKind::kBezier) return false;
+  if (kind != StrokeKind::kArc && kind != StrokeKind::kCircle) return true;
+  const CircleParameters c = circle_parameters(sketch, stroke);
+  if (c.straight || s.kind == SurfaceKind::kTorus) return true;
+  return std::abs(c.normal.dot(s.axis)) > 0.99 &&
+         s.axis.cross(c.centre - s.origin).norm() < 0.1 * c.radius;
+}
+
 // Distances of places along a curve from a surface.
 struct OnSurface {
   StrokeKind kind;
   SurfaceKind surface;
   std::vector<double> t;
+  double weight;
 
   template <typename T>
   bool operator()(T const* const* blocks, T* residuals) const {
@@ -57,7 +72,7 @@ struct OnSurface {
     for (size_t i = 0; i < t.size(); ++i) {
       evaluate_curve<T>(kind, control, t[i], &position, &derivative);
       residuals[i] =
-          T(kHard) * surface_distance<T>(surface, origin, axis, u[6], u[7], u[8], position);
+          T(weight) * surface_distance<T>(surface, origin, axis, u[6], u[7], u[8], position);
     }
     return true;
   }
@@ -109,6 +124,9 @@ class Adjustment {
     for (const SolidFace& face : solid->faces)
       for (const Loop& loop : face.loops)
         for (const LoopStroke& s : loop) bounds_.insert({s.stroke, face.surface});
+    exact_.assign(solid->edges.size(), true);
+    for (const auto& [stroke, surface] : bounds_)
+      exact_[stroke] = exact_[stroke] && fits(solid->edges, stroke, solid->surfaces[surface]);
   }
 
   void run() {
@@ -133,7 +151,7 @@ class Adjustment {
     double gap = 0;
     Vector3d p, d;
     for (const auto& [stroke, surface] : bounds_)
-      for (int i = 0; i <= 32; ++i) {
+      for (int i = 0; i <= 32; i += exact_[stroke] ? 1 : 32) {
         evaluate_stroke(solid_->edges, stroke, i / 32.0, &p, &d);
         gap = std::max(gap, std::abs(surface_distance(solid_->surfaces[surface], p)));
       }
@@ -146,15 +164,22 @@ class Adjustment {
     const int places = kind == StrokeKind::kLine ? 3 : 9;
     std::vector<double> t;
     for (int i = 0; i < places; ++i) t.push_back(i / (places - 1.0));
+    if (exact_[stroke]) return tie(stroke, surface, t, kHard);
+    tie(stroke, surface, t, 1);
+    if (!is_closed(kind)) tie(stroke, surface, {0, 1}, kHard);
+  }
+
+  void tie(int stroke, int surface, const std::vector<double>& t, double weight) {
+    const StrokeKind kind = solid_->edges.strokes[stroke].kind;
     auto* cost = new ceres::DynamicAutoDiffCostFunction<OnSurface, 9>(
-        new OnSurface{kind, solid_->surfaces[surface].kind, t});
+        new OnSurface{kind, solid_->surfaces[surface].kind, t, weight});
     std::vector<double*> blocks = {unknowns_[surface].data()};
     cost->AddParameterBlock(9);
     for (double* control : controls_of(&solid_->edges, stroke)) {
       blocks.push_back(control);
       cost->AddParameterBlock(3);
     }
-    cost->SetNumResiduals(places);
+    cost->SetNumResiduals(int(t.size()));
     problem_.AddResidualBlock(cost, nullptr, blocks);
   }
 
@@ -186,6 +211,7 @@ class Adjustment {
   double extent_;
   std::vector<Unknowns> unknowns_;
   std::set<std::pair<int, int>> bounds_;  // stroke, surface
+  std::vector<bool> exact_;               // per stroke: its kind can lie on its surfaces
   ceres::Problem problem_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <coin/Cbc_C_Interface.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -94,6 +95,28 @@ void exclude(const ChosenCells& other, Programme* programme) {
   programme->add_row(sum, 'G', 1 - chosen);
 }
 
+// A stroke that is no edge costs less if others are, which it may be seen twice.
+void add_doubles(const CellChoice& choice, int first, Programme* programme) {
+  for (const Double& d : choice.doubles) {
+    const double saved = choice.unused_price[d.stroke] - choice.double_price;
+    if (saved <= 0) continue;
+    const int twice = programme->add_column(-saved);
+    for (const std::vector<int>& place : d.along) {
+      std::map<int, double> sum = {{twice, 1}};
+      for (const int other : place) sum[first + other] = -1;
+      programme->add_row(sum, 'L', 0);
+    }
+    programme->add_row({{twice, 1}, {first + d.stroke, 1}}, 'L', 1);
+  }
+}
+
+bool seen_twice(const Double& d, const std::vector<bool>& edge) {
+  return !edge[d.stroke] &&
+         std::all_of(d.along.begin(), d.along.end(), [&](const std::vector<int>& place) {
+           return std::any_of(place.begin(), place.end(), [&](int s) { return edge[s]; });
+         });
+}
+
 }  // namespace
 
 ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells>& others,
@@ -102,6 +125,7 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   if (cells == 0) {  // nothing to choose, which the solver does not like
     ChosenCells none;
     none.stroke.assign(strokes, false);
+    none.twice = none.stroke;
     for (const double price : choice.unused_price) none.price += price;
     return none;
   }
@@ -119,14 +143,19 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   for (const auto& [a, b] : choice.exclusive) programme.add_row({{a, 1}, {b, 1}}, 'L', 1);
   for (const Cover& c : choice.covers) cover(c, &programme);
   for (const ChosenCells& other : others) exclude(other, &programme);
+  add_doubles(choice, cells, &programme);
 
   const std::vector<bool> values = programme.solve(nodes);
   ChosenCells out;
   out.cell.assign(values.begin(), values.begin() + cells);
   out.stroke.assign(values.begin() + cells, values.begin() + cells + strokes);
   for (int c = 0; c < cells; ++c) out.price += out.cell[c] ? choice.cell_price[c] : 0;
+  out.twice.assign(strokes, false);
+  for (const Double& d : choice.doubles) out.twice[d.stroke] = seen_twice(d, out.stroke);
   for (int s = 0; s < strokes; ++s)
-    out.price += out.stroke[s] ? choice.used_price[s] : choice.unused_price[s];
+    out.price += out.stroke[s]  ? choice.used_price[s]
+                 : out.twice[s] ? std::min(choice.double_price, choice.unused_price[s])
+                                : choice.unused_price[s];
   for (const Cover& c : choice.covers) {
     int met = 0;
     for (const int cell : c.cells) met += out.cell[cell];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,12 @@ struct Cover {
   double price = 0;  ///< [nat]
 };
 
+/// A stroke that may be others seen twice: of each set, one must be an edge.
+struct Double {
+  int stroke = -1;
+  std::set<std::vector<int>> along;  ///< strokes beside one or more places of it, ascending
+};
+
 /// Which cells bound the solid, and what each choice costs [nat].
 struct CellChoice {
   std::vector<Cell> cells;
@@ -22,11 +29,14 @@ struct CellChoice {
   std::vector<double> unused_price;            ///< per stroke: of its being none
   std::vector<std::pair<int, int>> exclusive;  ///< pairs of cells, of which one may be chosen
   std::vector<Cover> covers;
+  std::vector<Double> doubles;
+  double double_price = 0;  ///< [nat] of a stroke that is other edges seen twice
 };
 
 struct ChosenCells {
   std::vector<bool> cell;    ///< is it a part of the boundary?
   std::vector<bool> stroke;  ///< is it an edge, where two faces of different surfaces meet?
+  std::vector<bool> twice;   ///< is it none, but another one seen twice?
   double price = 0;          ///< of all, nat
 };
 

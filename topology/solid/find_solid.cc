@@ -8,50 +8,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
-#include "topology/faces/find_planes.h"
 #include "topology/solid/adjust.h"
 #include "topology/solid/assemble.h"
 #include "topology/solid/choose.h"
+#include "topology/solid/complete.h"
 #include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
-#include "topology/solid/infer_edges.h"
 
 namespace sketchsplat {
 namespace {
-
-using Eigen::Matrix3Xd;
-
-// Of bent strokes: chords stay within 3e-4 of a circle's radius.
-constexpr int kPieces = 128;
-
-// A sketch with the lines that surfaces imply, and which surfaces they lie on.
-struct Completed {
-  Sketch sketch;
-  std::vector<Matrix3Xd> polylines;
-  std::vector<SurfaceStrokes> surfaces;
-  std::vector<bool> inferred, smooth;  // per stroke
-};
-
-// Lines make planes known, and these further lines: a slot's straight sides hang on its rulings.
-Completed complete(const Sketch& sketch, double tolerance) {
-  constexpr int kRounds = 3;
-  Completed out{sketch, polylines_of(sketch, kPieces), {}, {}, {}};
-  out.inferred.assign(sketch.size(), false);
-  out.smooth = out.inferred;
-  for (int round = 0;; ++round) {
-    out.surfaces = find_surfaces(out.sketch, out.polylines, tolerance);
-    const std::vector<ImpliedStroke> implied =
-        implied_strokes(sketch, out.sketch, out.surfaces, tolerance);
-    if (implied.empty() || round == kRounds) return out;
-    for (const ImpliedStroke& s : implied) {
-      out.sketch.add_stroke(s.kind, s.begin, s.end, s.handles);
-      out.inferred.push_back(true);
-      out.smooth.push_back(s.smooth);
-    }
-    out.polylines = polylines_of(out.sketch, kPieces);
-  }
-}
 
 // Two surfaces of a kind that hold the same strokes give the same cells.
 void drop_doubles(std::vector<Cell>* cells, const std::vector<SurfaceStrokes>& surfaces) {
@@ -77,6 +44,41 @@ double unused_price(const Evidence& evidence) {
   return std::clamp(std::log(c / (1 - c)), kLeast, kMost) + kCause;
 }
 
+double used_price(EdgeOrigin origin, const SolidOptions& options) {
+  switch (origin) {
+    case EdgeOrigin::kSeen:
+      return 0;
+    case EdgeOrigin::kSmooth:
+      return options.smooth_price;
+    case EdgeOrigin::kCopy:
+      return options.copy_price;
+    case EdgeOrigin::kFaint:
+      break;
+  }
+  return options.faint_price;
+}
+
+// Strokes that may be others seen twice: of those that bound no face so far.
+std::vector<Double> doubles_of(const Sketch& sketch, const std::vector<bool>& left, double reach) {
+  constexpr int kPlaces = 16;
+  std::vector<Double> out;
+  Eigen::Vector3d p, d;
+  for (int s = 0; s < int(left.size()); ++s) {
+    if (!left[s]) continue;
+    Double stroke{s, {}};
+    for (int i = 0; i <= kPlaces; ++i) {
+      evaluate_stroke(sketch, s, double(i) / kPlaces, &p, &d);
+      std::vector<int> beside;
+      for (int other = 0; other < sketch.size(); ++other)
+        if (other != s && distance_to_stroke(sketch, other, p).distance <= reach)
+          beside.push_back(other);
+      stroke.along.insert(beside);
+    }
+    if (!stroke.along.count({})) out.push_back(stroke);
+  }
+  return out;
+}
+
 CellChoice price(const Completed& all, double tolerance, const SolidOptions& options,
                  const SolidEvidence& evidence, EvidenceOfCells* weighed) {
   CellChoice choice;
@@ -92,51 +94,104 @@ CellChoice price(const Completed& all, double tolerance, const SolidOptions& opt
     choice.covers.push_back({m.cells, options.evidence.ray * m.rays});
   choice.exclusive = crossing_cells(all.surfaces, choice.cells, tolerance);
   for (int s = 0; s < all.sketch.size(); ++s) {
-    const double faint = all.smooth[s] ? options.smooth_price : options.faint_price;
-    choice.used_price.push_back(all.inferred[s] ? faint : 0);
-    choice.unused_price.push_back(all.inferred[s] ? 0 : unused_price(all.sketch.evidence[s]));
+    const bool seen = all.origin[s] == EdgeOrigin::kSeen;
+    choice.used_price.push_back(used_price(all.origin[s], options));
+    choice.unused_price.push_back(seen ? unused_price(all.sketch.evidence[s]) : 0);
   }
+  choice.double_price = options.double_price;
   return choice;
 }
+
+// One search: with edges that surfaces imply, or with copies of loops and strokes seen twice, too.
+class Search {
+ public:
+  Search(const Sketch& sketch, double tolerance, double slide, const SolidOptions& options,
+         const SolidEvidence& evidence)
+      : sketch_(sketch),
+        tolerance_(tolerance),
+        slide_(slide),
+        options_(options),
+        evidence_(evidence),
+        all_(complete(sketch, tolerance, slide)) {}
+
+  SolidSearch plain() { return run(std::vector<bool>(sketch_.size())); }
+
+  // `plain` was tried, and left strokes over.
+  SolidSearch with_copies(const SolidSearch& before) {
+    std::vector<bool> left(sketch_.size());
+    for (const int s : before.doubtful) left[s] = true;
+    copy_loops(left, tolerance_, slide_, &all_);
+    return run(left);
+  }
+
+ private:
+  SolidSearch run(const std::vector<bool>& left) const {
+    SolidSearch out;
+    EvidenceOfCells weighed;
+    CellChoice choice = price(all_, tolerance_, options_, evidence_, &weighed);
+    choice.doubles = doubles_of(all_.sketch, left, 3 * tolerance_);
+    out.surfaces = int(all_.surfaces.size());
+    out.cells = int(choice.cells.size());
+    const ChosenCells best = choose_cells(choice, {}, options_.nodes);
+    for (int s = 0; s < sketch_.size(); ++s)
+      if (!best.stroke[s] && !best.twice[s]) out.doubtful.push_back(s);
+    out.twice = int(std::count(best.twice.begin(), best.twice.end(), true));
+    out.rays = int(evidence_.rays.size());
+    out.contradicted = contradicted(weighed, best.cell);
+    std::vector<bool> inferred;
+    for (const EdgeOrigin origin : all_.origin) inferred.push_back(origin != EdgeOrigin::kSeen);
+    Solid solid;
+    if (!assemble(all_.sketch, inferred, all_.polylines, all_.surfaces, choice.cells, best, &solid,
+                  &out.why))
+      return out;
+    out.margin = choose_cells(choice, {best}, options_.nodes).price - best.price;
+    out.why = objection(out);
+    if (out.why.empty()) out.solid = std::move(solid);
+    return out;
+  }
+
+  // Why a choice is not good enough; empty if it is.
+  std::string objection(const SolidSearch& found) const {
+    if (!found.doubtful.empty())
+      return std::to_string(found.doubtful.size()) + " of " + std::to_string(sketch_.size()) +
+             " curves are no edge of the faces that close";
+    if (found.contradicted > options_.contradicted * found.rays)
+      return "masks show otherwise along " + std::to_string(found.contradicted) + " of " +
+             std::to_string(found.rays) + " lines of sight";
+    if (found.margin < options_.margin)
+      return "another choice of faces explains the curves about as well";
+    return "";
+  }
+
+  const Sketch& sketch_;
+  double tolerance_, slide_;
+  const SolidOptions& options_;
+  const SolidEvidence& evidence_;
+  Completed all_;
+};
 
 }  // namespace
 
 SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
                        const SolidEvidence& evidence) {
-  SolidSearch out;
   const double tolerance = options.tolerance * largest_extent(sketch);
-  const Completed all = complete(sketch, tolerance);
-  EvidenceOfCells weighed;
-  const CellChoice choice = price(all, tolerance, options, evidence, &weighed);
-  out.surfaces = int(all.surfaces.size());
-  out.cells = int(choice.cells.size());
-  const ChosenCells best = choose_cells(choice, {}, options.nodes);
-  for (int s = 0; s < sketch.size(); ++s)
-    if (!best.stroke[s]) out.doubtful.push_back(s);
-  out.rays = int(evidence.rays.size());
-  out.contradicted = contradicted(weighed, best.cell);
-  Solid solid;
-  if (!assemble(all.sketch, all.inferred, all.polylines, all.surfaces, choice.cells, best, &solid,
-                &out.why))
-    return out;
-  out.margin = choose_cells(choice, {best}, options.nodes).price - best.price;
-  if (!out.doubtful.empty()) {
-    out.why = std::to_string(out.doubtful.size()) + " of " + std::to_string(sketch.size()) +
-              " curves are no edge of the faces that close";
-    return out;
+  // Thin walls ask for a fine tolerance, curves that err for a coarse one.
+  Search coarse(sketch, tolerance, 3 * tolerance, options, evidence),
+      fine(sketch, tolerance / 3, 3 * tolerance, options, evidence);
+  SolidSearch found[4];
+  int tried = 0;
+  for (Search* search : {&coarse, &fine}) {
+    found[tried] = search->plain();
+    if (found[tried++].solid) break;
   }
-  if (out.contradicted > options.contradicted * out.rays) {
-    out.why = "masks show otherwise along " + std::to_string(out.contradicted) + " of " +
-              std::to_string(out.rays) + " lines of sight";
-    return out;
+  for (int i = 0; i < 2 && !found[tried - 1].solid; ++i) {
+    Search* search = i == 0 ? &coarse : &fine;
+    if (found[i].doubtful.empty()) continue;
+    found[tried++] = search->with_copies(found[i]);
   }
-  if (out.margin < options.margin) {
-    out.why = "another choice of faces explains the curves about as well";
-    return out;
-  }
-  adjust(&solid);
-  out.solid = std::move(solid);
-  return out;
+  SolidSearch& last = found[tried - 1].solid ? found[tried - 1] : found[0];
+  if (last.solid) adjust(&*last.solid);
+  return std::move(last);
 }
 
 }  // namespace sketchsplat

@@ -15,6 +15,8 @@ struct SolidOptions {
   double face_price = 3;      ///< [nat] of a face
   double smooth_price = 1;    ///< [nat] of an inferred edge along which surfaces touch
   double faint_price = 6;     ///< [nat] of one that images should have shown
+  double copy_price = 2;      ///< [nat] of one of a loop's copy to a depth that strokes tell
+  double double_price = 4;    ///< [nat] of a stroke that is another one, seen twice
   double margin = 4;          ///< [nat] by which the second-best choice must be worse
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
@@ -26,6 +28,7 @@ struct SolidSearch {
   std::optional<Solid> solid;
   std::string why;            ///< if there is none: a clause
   std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending
+  int twice = 0;              ///< strokes that are other edges of the choice seen twice
   double margin = 0;          ///< [nat] by which the second-best choice is worse
   int surfaces = 0, cells = 0;
   int rays = 0,

@@ -90,6 +90,10 @@ class Finder {
     for (const Round& a : rounds_)
       for (const Round& b : rounds_)
         if (a.stroke < b.stroke) add_cone(a, b);
+    for (const Round& round : rounds_)
+      for (int s = 0; s < sketch_.size(); ++s)
+        if (s != round.stroke && sketch_.strokes[s].kind != StrokeKind::kLine)
+          add_cone_through(round, s);
     return std::move(found_);
   }
 
@@ -137,6 +141,25 @@ class Finder {
     s.radius = a.radius;
     s.slope = (b.radius - a.radius) / along;
     add_turned(s);
+  }
+
+  // The cone about the axis of a round on which a stroke of another plane lies, too: a chamfer that
+  // flat sides cut.
+  void add_cone_through(const Round& round, int stroke) {
+    const Matrix3Xd from = polylines_[stroke].colwise() - round.centre;
+    Eigen::Index far;
+    const double most = (from.transpose() * round.axis).cwiseAbs().maxCoeff(&far);
+    if (most <= 4 * tolerance_) return;
+    const double along = from.col(far).dot(round.axis);
+    const double radius = (from.col(far) - along * round.axis).norm();
+    if (std::abs(radius - round.radius) <= 4 * tolerance_) return;
+    Surface s;
+    s.kind = SurfaceKind::kCone;
+    s.origin = round.centre;
+    s.axis = round.axis;
+    s.radius = round.radius;
+    s.slope = (radius - round.radius) / along;
+    if (lies_on(s, polylines_[stroke], tolerance_)) add_turned(s);
   }
 
   const Sketch& sketch_;

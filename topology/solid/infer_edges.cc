@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "sketches/curve/conic.h"
+#include "sketches/curve/curve.h"
 #include "topology/solid/surface.h"
 
 namespace sketchsplat {
@@ -15,15 +17,20 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kBend = 0.1, kAlike = 0.998;  // of corners: sine; cosine
+
 class Inference {
  public:
   Inference(const Sketch& seen, const Sketch& sketch, const std::vector<SurfaceStrokes>& surfaces,
-            double tolerance)
+            double tolerance, double slide)
       : seen_(seen.size()),
-        degree_(node_degrees(seen)),
+        degree_(node_degrees(sketch)),
         sketch_(sketch),
         surfaces_(surfaces),
-        tolerance_(tolerance) {
+        tolerance_(tolerance),
+        slide_(slide) {
+    const std::vector<int> seen_degree = node_degrees(seen);
+    std::copy(seen_degree.begin(), seen_degree.end(), degree_.begin());
     for (const Stroke& s : sketch.strokes)
       if (!is_closed(s.kind)) joined_.insert(std::minmax(s.begin, s.end));
     for (const SurfaceStrokes& s : surfaces) {
@@ -43,10 +50,12 @@ class Inference {
         if (surfaces_[i].surface.kind == SurfaceKind::kPlane &&
             surfaces_[k].surface.kind == SurfaceKind::kPlane)
           add_meeting(int(i), int(k));
+    add_twin_corners();
     std::vector<ImpliedStroke> out;
     for (const auto& [ends, smooth] : lines_)
       out.push_back({StrokeKind::kLine, ends.first, ends.second, {}, smooth});
     add_rims(&out);
+    add_arcs(&out);
     return out;
   }
 
@@ -63,7 +72,7 @@ class Inference {
         const Eigen::Vector2d flat = layout.flat(Vector3d(sketch_.nodes.col(nodes[k])));
         double off = flat.x() - u;
         off -= layout.period() * std::round(off / layout.period());
-        if (std::abs(off) > 3 * tolerance_) continue;
+        if (std::abs(off) > slide_) continue;
         done[k] = true;
         along.emplace_back(flat.y(), nodes[k]);
       }
@@ -80,6 +89,109 @@ class Inference {
       if (std::binary_search(nodes_[b].begin(), nodes_[b].end(), node))
         along.emplace_back(direction.normalized().dot(sketch_.nodes.col(node)), node);
     add_neighbours(&along, false);
+  }
+
+  // Two corners that lack their third edge, at the two ends of it: the same two directions leave
+  // both, and the line between them is square to these.
+  void add_twin_corners() {
+    std::vector<Corner> corners;
+    for (int n = 0; n < int(degree_.size()); ++n)
+      if (degree_[n] == 2) add_corner(n, &corners);
+    for (size_t i = 0; i < corners.size(); ++i)
+      for (const double side : {-1.0, 1.0}) {
+        const int twin = nearest_twin(corners, int(i), side);
+        if (twin <= int(i)) continue;
+        const double back = corners[i].normal.dot(corners[twin].normal) > 0 ? -side : side;
+        if (nearest_twin(corners, twin, back) == int(i))
+          if (!joined_.count(std::minmax(corners[i].node, corners[twin].node)))
+            lines_.emplace(std::minmax(corners[i].node, corners[twin].node), false);
+      }
+  }
+  struct Corner {
+    int node;
+    Vector3d a, b, normal;
+  };
+  void add_corner(int node, std::vector<Corner>* corners) const {
+    std::vector<Vector3d> away;
+    for (int s = 0; s < seen_; ++s) {
+      const Stroke& stroke = sketch_.strokes[s];
+      if (stroke.begin == node) away.push_back(tangent_in(sketch_, s, node));
+      if (stroke.end == node && stroke.begin != node) away.push_back(tangent_in(sketch_, s, node));
+    }
+    if (away.size() != 2) return;
+    const Vector3d normal = away[0].cross(away[1]);
+    if (normal.norm() > kBend) corners->push_back({node, away[0], away[1], normal.normalized()});
+  }
+  // The nearest corner along the normal of another one's, on one side; -1 if there is none.
+  int nearest_twin(const std::vector<Corner>& corners, int index, double side) const {
+    const Corner& c = corners[index];
+    int best = -1;
+    double nearest = HUGE_VAL;
+    for (int k = 0; k < int(corners.size()); ++k) {
+      const Corner& o = corners[k];
+      const Vector3d between = sketch_.nodes.col(o.node) - sketch_.nodes.col(c.node);
+      const double along = side * between.dot(c.normal);
+      if (k == index || along <= 4 * tolerance_ || along >= nearest) continue;
+      if (between.cross(c.normal).norm() > 3 * tolerance_) continue;
+      const bool alike = (std::min(c.a.dot(o.a), c.b.dot(o.b)) > kAlike) ||
+                         (std::min(c.a.dot(o.b), c.b.dot(o.a)) > kAlike);
+      if (!alike) continue;
+      nearest = along;
+      best = k;
+    }
+    return best;
+  }
+
+  // Between loose ends of arcs of one circle.
+  void add_arcs(std::vector<ImpliedStroke>* out) const {
+    std::vector<LooseEnd> loose;
+    std::set<std::pair<int, int>> there;
+    for (int s = 0; s < sketch_.size(); ++s) {
+      const Stroke& stroke = sketch_.strokes[s];
+      if (stroke.kind != StrokeKind::kArc) continue;
+      if (s >= seen_) there.insert(std::minmax(stroke.begin, stroke.end));
+      const CircleParameters circle = circle_parameters(sketch_, s);
+      if (s >= seen_ || circle.straight) continue;
+      if (degree_[stroke.begin] == 1) loose.push_back({stroke.begin, circle, -1});
+      if (degree_[stroke.end] == 1) loose.push_back({stroke.end, circle, 1});
+    }
+    for (const LooseEnd& end : loose) {
+      const LooseEnd* next = next_end(loose, end);
+      if (!next || !(next_end(loose, *next) == &end)) continue;
+      if (!there.insert(std::minmax(end.node, next->node)).second) continue;
+      const double half = angle_to(end, *next) / 2;
+      const Vector3d from = sketch_.nodes.col(end.node) - end.circle.centre;
+      const Vector3d apex =
+          end.circle.centre + Eigen::AngleAxisd(end.sense * half, end.circle.normal) * from;
+      out->push_back({StrokeKind::kArc, end.node, next->node, {apex}, false});
+    }
+  }
+  // An end of an arc that nothing goes on from; its circle goes on in this sense about its normal.
+  struct LooseEnd {
+    int node;
+    CircleParameters circle;
+    int sense;
+  };
+  // On from an end to another one of its circle [rad], in (0, 2 pi).
+  double angle_to(const LooseEnd& end, const LooseEnd& other) const {
+    const Vector3d a = sketch_.nodes.col(end.node) - end.circle.centre,
+                   b = sketch_.nodes.col(other.node) - end.circle.centre;
+    const double angle = end.sense * std::atan2(end.circle.normal.dot(a.cross(b)), a.dot(b));
+    return angle > 0 ? angle : angle + 2 * M_PI;
+  }
+  // The first one that looks back along the same circle.
+  const LooseEnd* next_end(const std::vector<LooseEnd>& loose, const LooseEnd& end) const {
+    const LooseEnd* best = nullptr;
+    for (const LooseEnd& other : loose) {
+      const CircleParameters &a = end.circle, &b = other.circle;
+      const double turn = a.normal.dot(b.normal);
+      if (&other == &end || turn * end.sense * other.sense > -0.999) continue;
+      if ((a.centre - b.centre).norm() > 2 * tolerance_ ||
+          std::abs(a.radius - b.radius) > 2 * tolerance_)
+        continue;
+      if (!best || angle_to(end, other) < angle_to(end, *best)) best = &other;
+    }
+    return best;
   }
 
   void add_rims(std::vector<ImpliedStroke>* out) const {
@@ -128,7 +240,7 @@ class Inference {
   std::vector<int> degree_;
   const Sketch& sketch_;
   const std::vector<SurfaceStrokes>& surfaces_;
-  double tolerance_;
+  double tolerance_, slide_;
   std::set<std::pair<int, int>> joined_;
   std::vector<std::vector<int>> nodes_;  // of every surface, ascending
   std::map<std::pair<int, int>, bool> lines_;
@@ -136,10 +248,17 @@ class Inference {
 
 }  // namespace
 
+Vector3d tangent_in(const Sketch& sketch, int stroke, int node) {
+  const bool begin = sketch.strokes[stroke].begin == node;
+  Vector3d position, derivative;
+  evaluate_stroke(sketch, stroke, begin ? 0 : 1, &position, &derivative);
+  return (begin ? derivative : -derivative).normalized();
+}
+
 std::vector<ImpliedStroke> implied_strokes(const Sketch& seen, const Sketch& completed,
                                            const std::vector<SurfaceStrokes>& surfaces,
-                                           double tolerance) {
-  return Inference(seen, completed, surfaces, tolerance).find();
+                                           double tolerance, double slide) {
+  return Inference(seen, completed, surfaces, tolerance, slide).find();
 }
 
 }  // namespace sketchsplat

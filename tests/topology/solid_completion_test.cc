@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// Solids of which images show too little, or something twice.
+#include <algorithm>
+#include <cmath>
+
+#include "gmock/gmock.h"
+#include "sketches/curve/curve.h"
+#include "tests/topology/solids.h"
+#include "topology/brep/solid_step.h"
+#include "topology/solid/find_solid.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Sketch without(const Sketch& sketch, const std::vector<int>& strokes) {
+  std::vector<bool> keep(sketch.size(), true);
+  for (const int s : strokes) keep[s] = false;
+  return keep_strokes(sketch, keep);
+}
+
+double volume_of(const SolidSearch& search) {
+  if (!search.solid) return 0;
+  const SolidCheck check = write_solid_step(*search.solid, "");
+  EXPECT_TRUE(check.valid) << check.why;
+  return check.volume;
+}
+
+// Rectangle of four lines at a height; its corners, counter-clockwise.
+std::vector<int> rectangle(SolidMaker* m, double x, double y, double z) {
+  std::vector<int> n;
+  for (const auto& [a, b] : {std::pair(-x, -y), {x, -y}, {x, y}, {-x, y}})
+    n.push_back(m->node({a, b, z}));
+  for (int i = 0; i < 4; ++i) m->line(n[size_t(i)], n[size_t(i + 1) % 4]);
+  return n;
+}
+
+// A box of 4 x 3 x 2 with a pocket of 2 x 1 x 1 in its top: strokes 0 to 11 are the box, then the
+// rim (4), the floor (4) and the corners (4) of the pocket.
+Sketch pocket() {
+  SolidMaker m;
+  const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
+  for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+  const std::vector<int> rim = rectangle(&m, 1, 0.5, 2), floor = rectangle(&m, 1, 0.5, 1);
+  for (size_t i = 0; i < 4; ++i) m.line(rim[i], floor[i]);
+  return m.solid.edges;
+}
+
+TEST(SolidCompletion, AFloorIsACopyOfTheRimAtTheDepthThatOneEdgeTells) {
+  EXPECT_NEAR(volume_of(find_solid(pocket())), 24 - 2, 1e-9);
+  for (const int corner : {20, 21, 22, 23}) {  // the rim and one line down from it
+    std::vector<int> missing = {16, 17, 18, 19};
+    for (const int s : {20, 21, 22, 23})
+      if (s != corner) missing.push_back(s);
+    EXPECT_NEAR(volume_of(find_solid(without(pocket(), missing))), 24 - 2, 1e-9);
+  }
+  // The rim and one edge of the floor.
+  EXPECT_NEAR(volume_of(find_solid(without(pocket(), {17, 18, 19, 20, 21, 22, 23}))), 24 - 2, 1e-9);
+}
+
+TEST(SolidCompletion, APocketOfUnknownDepthIsRefused) {
+  const SolidSearch search = find_solid(without(pocket(), {16, 17, 18, 19, 20, 21, 22, 23}));
+  EXPECT_FALSE(search.solid);
+  EXPECT_THAT(search.why, HasSubstr("4 of 16 curves"));
+}
+
+TEST(SolidCompletion, TwoOutlinesAloneAreJoinedAtTheirCorners) {
+  const SolidSearch search = find_solid(without(pocket(), {8, 9, 10, 11}));
+  EXPECT_NEAR(volume_of(search), 24 - 2, 1e-9);
+}
+
+TEST(SolidCompletion, AnEdgeSeenTwiceIsOneEdge) {
+  SolidMaker m;
+  const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
+  for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+  m.line(m.node({-1.5, 1.51, 1.99}), m.node({1, 1.505, 2.01}));
+  const SolidSearch search = find_solid(m.solid.edges);
+  EXPECT_NEAR(volume_of(search), 24, 1e-9);
+  EXPECT_EQ(search.twice, 1);
+  EXPECT_THAT(search.doubtful, IsEmpty());
+}
+
+TEST(SolidCompletion, AThinWallAsksForAFineTolerance) {
+  SolidMaker m;
+  const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 0.08);
+  for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+  SolidOptions options;
+  options.tolerance = 4e-3;
+  EXPECT_NEAR(volume_of(find_solid(m.solid.edges, options)), 0.96, 1e-9);
+}
+
+// The plate of half a side's thickness, its hole's upper rim from `first` to `last` [rad] in two
+// arcs, which meet, leave a gap or run past one another.
+Sketch plate_with_open_rim(double first, double middle_end, double middle_begin, double last) {
+  const Sketch plate = plate_with_hole(0.5).edges;
+  int upper = -1;
+  for (int s = 0; s < plate.size(); ++s)
+    if (plate.strokes[s].kind == StrokeKind::kCircle &&
+        (upper < 0 || control_points(plate, s).p[0].z() > control_points(plate, upper).p[0].z()))
+      upper = s;
+  const ControlPoints rim = control_points(plate, upper);
+  Sketch out = without(plate, {upper});
+  const double radius = rim.p[1].norm();
+  const auto at = [&](double angle) {
+    return Vector3d(rim.p[0] + radius * Vector3d(std::cos(angle), std::sin(angle), 0));
+  };
+  for (const auto& [a, b] : {std::pair(first, middle_end), {middle_begin, last}}) {
+    const int begin = out.add_node(at(a)), end = out.add_node(at(b));
+    out.add_stroke(StrokeKind::kArc, begin, end, {at((a + b) / 2)});
+  }
+  return out;
+}
+
+TEST(SolidCompletion, ArcsOfOneCircleGoOnFromOneToTheOther) {
+  const double volume = volume_of(find_solid(plate_with_hole(0.5).edges));
+  EXPECT_NEAR(volume_of(find_solid(plate_with_open_rim(0, 2, 3, 5.5))), volume, 1e-6);  // gaps
+  EXPECT_NEAR(volume_of(find_solid(plate_with_open_rim(0, 3.2, 3, 6.4))), volume,
+              1e-6);  // overlaps
+}
+
+// A pipe of radius 1 along x and a branch of radius 0.6 along z: cubics follow where they meet.
+Sketch tee() {
+  SolidMaker m;
+  m.circle({-2, 0, 0}, Vector3d::UnitX(), 1);
+  m.circle({2, 0, 0}, Vector3d::UnitX(), 1);
+  m.circle({0, 0, 2}, Vector3d::UnitZ(), 0.6);
+  const auto place = [](double a) {
+    const double x = 0.6 * std::cos(a), y = 0.6 * std::sin(a);
+    return Vector3d(x, y, std::sqrt(1 - y * y));
+  };
+  const auto slope = [&](double a) { return Vector3d((place(a + 1e-6) - place(a - 1e-6)) / 2e-6); };
+  constexpr int kPieces = 8;
+  const double turn = 2 * M_PI / kPieces;
+  std::vector<int> nodes;
+  for (int k = 0; k < kPieces; ++k) nodes.push_back(m.node(place(k * turn)));
+  for (int k = 0; k < kPieces; ++k) {
+    const double a = k * turn, b = a + turn;
+    m.add(StrokeKind::kBezier, nodes[size_t(k)], nodes[size_t(k + 1) % kPieces],
+          {place(a) + slope(a) * turn / 3, place(b) - slope(b) * turn / 3});
+  }
+  return m.solid.edges;
+}
+
+TEST(SolidCompletion, CurvesThatOnlyFollowAnEdgeDoNotBendItsSurfaces) {
+  const SolidSearch search = find_solid(tee());
+  ASSERT_TRUE(search.solid) << search.why;
+  double branch = 0;  // above the pipe
+  constexpr int kSteps = 2000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double y = -0.6 + 1.2 * (i + 0.5) / kSteps;
+    branch += 2 * std::sqrt(0.36 - y * y) * (2 - std::sqrt(1 - y * y)) * 1.2 / kSteps;
+  }
+  EXPECT_NEAR(volume_of(search), 4 * M_PI + branch, 2e-4);
+  std::vector<double> radii;
+  for (const Surface& s : search.solid->surfaces)
+    if (s.kind == SurfaceKind::kCylinder) radii.push_back(s.radius);
+  std::sort(radii.begin(), radii.end());
+  ASSERT_EQ(radii.size(), 2u);
+  EXPECT_NEAR(radii[0], 0.6, 3e-4);
+  EXPECT_NEAR(radii[1], 1, 3e-4);
+}
+
+}  // namespace
+}  // namespace sketchsplat

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include <Eigen/Dense>
+#include <GeomAPI_Interpolate.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <TColgp_HArray1OfPnt.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "sketches/curve/curve.h"
+#include "topology/brep/geometry.h"
+
+namespace sketchsplat::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kPlaces = 65;
+// How far the stroke may be from where the surfaces meet; of its length.
+constexpr double kAside = 0.1;
+
+// Derivatives of the signed distance, by central differences of a length at which digits are left.
+Vector3d gradient(const Surface& surface, const Vector3d& p, double step) {
+  Vector3d out;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d aside = Vector3d::Unit(k) * step;
+    out[k] =
+        (surface_distance(surface, p + aside) - surface_distance(surface, p - aside)) / (2 * step);
+  }
+  return out;
+}
+
+// The nearest place on both surfaces, by Newton's method.
+Vector3d meeting_near(const Surface& a, const Surface& b, Vector3d p, double step) {
+  constexpr int kSteps = 20;
+  for (int i = 0; i < kSteps; ++i) {
+    Eigen::Matrix<double, 2, 3> slope;
+    slope << gradient(a, p, step).transpose(), gradient(b, p, step).transpose();
+    const Eigen::Vector2d off(surface_distance(a, p), surface_distance(b, p));
+    p -= slope.completeOrthogonalDecomposition().solve(off);
+  }
+  return p;
+}
+
+}  // namespace
+
+void trace(const Sketch& sketch, int stroke, double near, const Surface& a, const Surface& b,
+           EdgeCurve* curve) {
+  if (curve->closed) return;
+  const double length = stroke_length(sketch, stroke);
+  const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, kPlaces);
+  double off = 0, aside = 0, left = 0;
+  for (int i = 0; i < kPlaces; ++i) {
+    Vector3d p, d;
+    evaluate_stroke(sketch, stroke, i / (kPlaces - 1.0), &p, &d);
+    const auto distance = [&](const Vector3d& x) {
+      return std::max(std::abs(surface_distance(a, x)), std::abs(surface_distance(b, x)));
+    };
+    const Vector3d met = meeting_near(a, b, p, 1e-5 * length);
+    off = std::max(off, distance(p));
+    left = std::max(left, distance(met));
+    aside = std::max(aside, (met - p).norm());
+    points->SetValue(i + 1, to_point(met));
+  }
+  if (off <= near || !(left <= near) || !(aside <= kAside * length)) return;
+  GeomAPI_Interpolate through(points, /*PeriodicFlag=*/false, 1e-9);
+  through.Perform();
+  if (!through.IsDone()) throw Refused("an edge cannot be traced");
+  const Handle(Geom_BSplineCurve) spline = through.Curve();
+  curve->curve = spline;
+  curve->first = spline->FirstParameter();
+  curve->last = spline->LastParameter();
+}
+
+}  // namespace sketchsplat::brep

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "topology/solid/complete.h"
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "sketches/curve/closest.h"
+#include "sketches/curve/curve.h"
+#include "topology/faces/find_planes.h"
+#include "topology/solid/infer_edges.h"
+
+namespace sketchsplat {
+namespace {
+
+// Of bent strokes: chords stay within 3e-4 of a circle's radius.
+constexpr int kPieces = 128;
+// Lines make planes known, and these further lines: a slot's straight sides hang on its rulings.
+constexpr int kRounds = 3;
+
+// An end of an open stroke that nothing else ends in.
+struct LooseEnd {
+  int stroke, node;
+};
+
+std::vector<LooseEnd> loose_ends(const Sketch& sketch) {
+  const std::vector<int> degree = node_degrees(sketch);
+  std::vector<LooseEnd> out;
+  for (int s = 0; s < sketch.size(); ++s) {
+    const Stroke& stroke = sketch.strokes[s];
+    if (is_closed(stroke.kind)) continue;
+    if (degree[stroke.begin] == 1) out.push_back({s, stroke.begin});
+    if (degree[stroke.end] == 1) out.push_back({s, stroke.end});
+  }
+  return out;
+}
+
+// Where the end of one stroke lies along another one, shortly before its end; NaN if it does not.
+double overlap(const Sketch& sketch, const LooseEnd& end, const LooseEnd& other, double tolerance) {
+  constexpr double kShort = 0.25;
+  const ClosestPoint at = distance_to_stroke(sketch, other.stroke, sketch.nodes.col(end.node));
+  const double before = sketch.strokes[other.stroke].begin == other.node ? at.t : 1 - at.t;
+  return at.distance <= tolerance && before > 0 && before < kShort ? at.t : NAN;
+}
+
+// Two strokes that run past one another, each as the other one goes on, end where one of them did.
+void cut_overlaps(double tolerance, Sketch* sketch) {
+  const std::vector<LooseEnd> loose = loose_ends(*sketch);
+  std::set<int> done;
+  for (const LooseEnd& end : loose)
+    for (const LooseEnd& other : loose) {
+      if (end.stroke == other.stroke || done.count(end.node) || done.count(other.node)) continue;
+      const double t = overlap(*sketch, end, other, tolerance);
+      if (std::isnan(t) || std::isnan(overlap(*sketch, other, end, tolerance))) continue;
+      Stroke& cut = sketch->strokes[other.stroke];
+      const bool at_begin = cut.begin == other.node;
+      const ControlPoints whole = control_points(*sketch, other.stroke);
+      const ControlPoints piece =
+          at_begin ? subcurve(cut.kind, whole, t, 1) : subcurve(cut.kind, whole, 0, t);
+      for (int h = 0; h < num_handles(cut.kind); ++h)
+        sketch->handles.col(cut.handle + h) = piece.p[h + 1];
+      (at_begin ? cut.begin : cut.end) = end.node;
+      done.insert({end.node, other.node});
+    }
+}
+
+}  // namespace
+
+void Completed::add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
+                    const std::vector<Eigen::Vector3d>& handles) {
+  sketch.add_stroke(kind, begin, end, handles);
+  origin.push_back(from);
+}
+
+void imply(double tolerance, double slide, Completed* all) {
+  for (int round = 0;; ++round) {
+    all->polylines = polylines_of(all->sketch, kPieces);
+    all->surfaces = find_surfaces(all->sketch, all->polylines, tolerance);
+    const std::vector<ImpliedStroke> implied =
+        implied_strokes(all->seen, all->sketch, all->surfaces, tolerance, slide);
+    if (implied.empty() || round == kRounds) return;
+    for (const ImpliedStroke& s : implied)
+      all->add(s.smooth ? EdgeOrigin::kSmooth : EdgeOrigin::kFaint, s.kind, s.begin, s.end,
+               s.handles);
+  }
+}
+
+Completed complete(const Sketch& seen, double tolerance, double slide) {
+  Completed out;
+  out.seen = seen;
+  cut_overlaps(tolerance, &out.seen);
+  out.sketch = out.seen;
+  out.origin.assign(seen.size(), EdgeOrigin::kSeen);
+  imply(tolerance, slide, &out);
+  return out;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sketches/graph/sketch.h"
+#include "topology/solid/find_surfaces.h"
+
+namespace sketchsplat {
+
+/// Where an edge comes from.
+enum class EdgeOrigin {
+  kSeen,    ///< images show it
+  kSmooth,  ///< its surfaces touch along it: no image can show it
+  kFaint,   ///< images should have shown it
+  kCopy     ///< of a loop: the floor of a pocket of which something else tells how deep it is
+};
+
+/// A sketch with the edges that its surfaces imply.
+struct Completed {
+  Sketch seen;    ///< as given, but for strokes that run past one another: these are cut
+  Sketch sketch;  ///< nodes and strokes that are seen, then the others
+  std::vector<Eigen::Matrix3Xd> polylines;
+  std::vector<SurfaceStrokes> surfaces;
+  std::vector<EdgeOrigin> origin;  ///< per stroke
+
+  void add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
+           const std::vector<Eigen::Vector3d>& handles);
+};
+
+/// Adds edges that surfaces imply, and finds all surfaces, until there are no more. `tolerance`: of
+/// a stroke from the surface that it lies on, world units.
+void imply(double tolerance, double slide, Completed* all);
+Completed complete(const Sketch& seen, double tolerance, double slide);
+
+/// Copies closed loops of strokes in a plane, all of which are `left` (per stroke that is seen: it
+/// bounds no face that closes), along the normal of the plane, to the depths that other such
+/// strokes tell: lines that lead there from a corner of the loop, and strokes that run below it.
+/// Nothing is changed, and false returned, if there is no such loop.
+bool copy_loops(const std::vector<bool>& left, double tolerance, double slide,
+                Completed* completed);
+
+}  // namespace sketchsplat
