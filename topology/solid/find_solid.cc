@@ -16,6 +16,7 @@
 #include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
 #include "topology/solid/infer_edges.h"
+#include "topology/solid/round_candidates.h"
 
 namespace sketchsplat {
 namespace {
@@ -33,36 +34,56 @@ struct Completed {
   std::vector<bool> inferred, smooth;  // per stroke
 };
 
+void add_implied(const std::vector<ImpliedStroke>& implied, Completed* out) {
+  for (const ImpliedStroke& s : implied) {
+    out->sketch.add_stroke(s.kind, s.begin, s.end, s.handles);
+    out->inferred.push_back(true);
+    out->smooth.push_back(s.smooth);
+  }
+  out->polylines = polylines_of(out->sketch, kPieces);
+}
+
 // Lines make planes known, and these further lines: a slot's straight sides hang on its rulings.
-Completed complete(const Sketch& sketch, double tolerance) {
+Completed complete(const Sketch& sketch, const std::vector<ContourLine>& contours,
+                   double tolerance) {
   constexpr int kRounds = 3;
   Completed out{sketch, polylines_of(sketch, kPieces), {}, {}, {}};
   out.inferred.assign(sketch.size(), false);
   out.smooth = out.inferred;
-  for (int round = 0;; ++round) {
+  out.surfaces = find_surfaces(sketch, out.polylines, tolerance);
+  RoundCandidates round =
+      round_candidates(sketch, out.polylines, out.surfaces, contours, tolerance);
+  add_implied(round.rims, &out);
+  for (int k = 0;; ++k) {
     out.surfaces = find_surfaces(out.sketch, out.polylines, tolerance);
     const std::vector<ImpliedStroke> implied =
         implied_strokes(sketch, out.sketch, out.surfaces, tolerance);
-    if (implied.empty() || round == kRounds) return out;
-    for (const ImpliedStroke& s : implied) {
-      out.sketch.add_stroke(s.kind, s.begin, s.end, s.handles);
-      out.inferred.push_back(true);
-      out.smooth.push_back(s.smooth);
-    }
-    out.polylines = polylines_of(out.sketch, kPieces);
+    if (implied.empty() || k == kRounds) break;
+    add_implied(implied, &out);
   }
+  for (SurfaceStrokes& s : round.surfaces) {
+    s.strokes = strokes_on(s.surface, out.polylines, tolerance);
+    out.surfaces.push_back(std::move(s));
+  }
+  return out;
 }
 
-// Two surfaces of a kind that hold the same strokes give the same cells.
+// Two surfaces of a kind that hold the same strokes give the same cells; but of spheres and tori,
+// which bulge as they like.
 void drop_doubles(std::vector<Cell>* cells, const std::vector<SurfaceStrokes>& surfaces) {
   std::set<std::pair<bool, std::vector<int>>> seen;
   std::vector<Cell> out;
   for (Cell& cell : *cells) {
+    const SurfaceKind kind = surfaces[cell.surface].surface.kind;
+    if (kind == SurfaceKind::kSphere || kind == SurfaceKind::kTorus) {
+      out.push_back(std::move(cell));
+      continue;
+    }
     std::vector<int> strokes;
     for (const Loop& loop : cell.loops)
       for (const LoopStroke& s : loop) strokes.push_back(s.stroke);
     std::sort(strokes.begin(), strokes.end());
-    const bool planar = surfaces[cell.surface].surface.kind == SurfaceKind::kPlane;
+    const bool planar = kind == SurfaceKind::kPlane;
     if (seen.emplace(planar, strokes).second) out.push_back(std::move(cell));
   }
   *cells = std::move(out);
@@ -105,7 +126,7 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
                        const SolidEvidence& evidence) {
   SolidSearch out;
   const double tolerance = options.tolerance * largest_extent(sketch);
-  const Completed all = complete(sketch, tolerance);
+  const Completed all = complete(sketch, evidence.contours, tolerance);
   EvidenceOfCells weighed;
   const CellChoice choice = price(all, tolerance, options, evidence, &weighed);
   out.surfaces = int(all.surfaces.size());

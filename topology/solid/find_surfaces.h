@@ -13,7 +13,12 @@ namespace sketchsplat {
 struct SurfaceStrokes {
   Surface surface;
   std::vector<int> strokes;  ///< ascending
+  bool around_tube = false;  ///< strokes run around the tube of this torus, not around its axis
 };
+
+/// Strokes that lie on a surface, ascending.
+std::vector<int> strokes_on(const Surface& surface, const std::vector<Eigen::Matrix3Xd>& polylines,
+                            double tolerance);
 
 /// Surfaces that strokes ask for: planes of strokes that meet; cylinders and cones through an arc
 /// or circle, about its axis, and cylinders cut in an ellipse, that hold more than the strokes of
