@@ -25,7 +25,7 @@ constexpr double kWithoutMasks = 3;
 constexpr int kSightsPerStroke = 8;  // of one view
 constexpr int kMaskViews = 24, kMaskGrid = 32;
 constexpr int kClearPx = 3;  // [px] around a pixel that the mask must agree on
-constexpr int kContourLines = 1500, kLeastChain = 12;
+constexpr int kContourLines = 600, kLeastChain = 12;
 
 void add_sights(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {
   const Observation o = observe_places(sketch, world);
@@ -90,18 +90,22 @@ void add_rays(const View& view, const Image<uint8_t>& mask, const EdgeWorld& wor
 }
 
 // Every so many edgels of those that no stroke explains: as a rule, contours of round surfaces.
+// With masks, those of their outlines, which are nothing else.
 void add_contours(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {
   const SampleLayout layout = plan_samples(sketch, 2 * world.footprint);
   const Samples samples = evaluate_samples(sketch, layout);
   EdgelFlags explained = no_edgels(world);
   explain(world, {samples.position, samples.tangent, layout.first}, {}, &explained);
   const EdgeWorld rest = unexplained(world, explained, kLeastChain);
+  bool masked = false;
+  for (const EdgelMap& map : world.maps) masked |= map.mask.width > 0;
   size_t edgels = 0, passed = 0;
-  for (const EdgelMap& map : rest.maps) edgels += map.edgels.size();
+  for (const EdgelMap& map : rest.maps)
+    for (const Edgel& e : map.edgels) edgels += e.outline || !masked;
   const size_t step = 1 + edgels / kContourLines;
   for (size_t v = 0; v < rest.views.size(); ++v)
     for (const Edgel& e : rest.maps[v].edgels) {
-      if (passed++ % step != 0) continue;
+      if ((masked && !e.outline) || passed++ % step != 0) continue;
       const Vector3d ray = rest.views[v].camera.ray(Vector2d(e.x, e.y));
       evidence->contours.push_back(
           {rest.views[v].center_in_world(),

@@ -7,6 +7,7 @@
 #include "gmock/gmock.h"
 #include "tests/topology/solids.h"
 #include "topology/brep/solid_step.h"
+#include "topology/faces/find_planes.h"
 #include "topology/solid/find_solid.h"
 #include "topology/solid/round_families.h"
 
@@ -91,7 +92,8 @@ TEST(Contours, TellHowAGrooveBends) {
 
 TEST(FindSolid, ContoursTellABallFromItsOneEdge) {
   SolidEvidence evidence;
-  const Solid cap = ball_cap(-0.5);
+  Solid cap = ball_cap(-0.5);
+  cap.edges.evidence[0].confidence = 0.99999;
   evidence.contours = touching(
       cap.surfaces[0], [](const Vector3d& p) { return p.z() > -0.5; }, 90);
   const SolidSearch search = find_solid(cap.edges, {}, evidence);

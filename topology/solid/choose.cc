@@ -84,6 +84,13 @@ void cover(const Cover& cover, Programme* programme) {
   programme->add_row(sum, 'G', 1);
 }
 
+// One face costs less than two.
+void merge(int a, int b, double saved, Programme* programme) {
+  const int both = programme->add_column(-saved);
+  programme->add_row({{both, 1}, {a, -1}}, 'L', 0);
+  programme->add_row({{both, 1}, {b, -1}}, 'L', 0);
+}
+
 void exclude(const ChosenCells& other, Programme* programme) {
   std::map<int, double> sum;
   int chosen = 0;
@@ -118,6 +125,7 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   }
   for (const auto& [a, b] : choice.exclusive) programme.add_row({{a, 1}, {b, 1}}, 'L', 1);
   for (const Cover& c : choice.covers) cover(c, &programme);
+  for (const auto& [pair, saved] : choice.merges) merge(pair.first, pair.second, saved, &programme);
   for (const ChosenCells& other : others) exclude(other, &programme);
 
   const std::vector<bool> values = programme.solve(nodes);
@@ -127,6 +135,8 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   for (int c = 0; c < cells; ++c) out.price += out.cell[c] ? choice.cell_price[c] : 0;
   for (int s = 0; s < strokes; ++s)
     out.price += out.stroke[s] ? choice.used_price[s] : choice.unused_price[s];
+  for (const auto& [pair, saved] : choice.merges)
+    out.price -= out.cell[pair.first] && out.cell[pair.second] ? saved : 0;
   for (const Cover& c : choice.covers) {
     int met = 0;
     for (const int cell : c.cells) met += out.cell[cell];

@@ -22,6 +22,9 @@ struct CellChoice {
   std::vector<double> unused_price;            ///< per stroke: of its being none
   std::vector<std::pair<int, int>> exclusive;  ///< pairs of cells, of which one may be chosen
   std::vector<Cover> covers;
+  /// Cells of one surface on both sides of a closed stroke, and what it saves [nat] to choose both:
+  /// they are one face then.
+  std::vector<std::pair<std::pair<int, int>, double>> merges;
 };
 
 struct ChosenCells {

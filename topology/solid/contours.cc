@@ -11,6 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kFine = 8;     // steps of the second search, around what the first one finds
 constexpr int kPlaces = 33;  // on a line within the ball around a part
 
 // Where a line comes nearest to a surface, or leaves it the least while it is inside.
@@ -19,8 +20,17 @@ struct Extreme {
   bool nearest = false;  // else: least deep
 };
 
+// Of a ball: where the perpendicular from its centre meets the line.
+std::optional<Extreme> extreme_of_ball(const RoundPatch& patch, const ContourLine& line) {
+  const Vector3d& centre = patch.surface.origin;
+  const Vector3d foot = line.from + (centre - line.from).dot(line.direction) * line.direction;
+  if (!patch.holds(foot)) return std::nullopt;
+  return Extreme{(foot - centre).norm() - patch.surface.radius, true};
+}
+
 // The one that is nearest to touching, of those at the part.
 std::optional<Extreme> extreme_of(const RoundPatch& patch, const ContourLine& line) {
+  if (patch.surface.kind == SurfaceKind::kSphere) return extreme_of_ball(patch, line);
   const double foot = (patch.middle - line.from).dot(line.direction);
   const double aside2 = (line.from + foot * line.direction - patch.middle).squaredNorm();
   const double half2 = patch.reach * patch.reach - aside2;
@@ -89,6 +99,7 @@ void Contours::remove(const std::vector<int>& lines) {
 std::optional<Contours::Fit> Contours::fit(const RoundFamily& family, double low, double high,
                                            int steps, int least) const {
   if (size() < least) return std::nullopt;
+  if (low == high) return touched(family, low, least);
   std::vector<Interval> intervals;
   std::vector<std::optional<Extreme>> last(lines_.size()), here = last;
   for (int k = 0; k <= steps; ++k) {
@@ -106,17 +117,22 @@ std::optional<Contours::Fit> Contours::fit(const RoundFamily& family, double low
     std::swap(last, here);
   }
   if (int(intervals.size()) < least) return std::nullopt;
-  Fit out;
   const double rough = most_held(intervals);
   std::vector<double> middles;
   for (const Interval& i : intervals)
     if (i.low <= rough && rough <= i.high) middles.push_back((i.low + i.high) / 2);
   if (middles.empty()) return std::nullopt;
   std::nth_element(middles.begin(), middles.begin() + long(middles.size() / 2), middles.end());
-  out.parameter = middles[middles.size() / 2];
-  const std::optional<RoundPatch> patch = family(out.parameter);
+  const double best = middles[middles.size() / 2], step = (high - low) / steps;
+  if (steps <= kFine) return touched(family, best, least);
+  return fit(family, best - step, best + step, kFine, least);  // where off is linear in between
+}
+
+std::optional<Contours::Fit> Contours::touched(const RoundFamily& family, double parameter,
+                                               int least) const {
+  const std::optional<RoundPatch> patch = family(parameter);
   if (!patch) return std::nullopt;
-  out.lines = touching(*patch);
+  Fit out{parameter, touching(*patch)};
   std::vector<Vector3d> cameras;
   for (const int i : out.lines)
     if (std::find(cameras.begin(), cameras.end(), lines_[i].from) == cameras.end())

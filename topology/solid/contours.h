@@ -43,14 +43,16 @@ class Contours {
     double parameter = 0;
     std::vector<int> lines;  ///< that touch this member of the family
   };
-  /// The parameter between low and high on which the most lines agree, each of which says for itself
-  /// which members of the family it touches; nothing if they are fewer than `least`, or of fewer
-  /// than three cameras. `steps`: of the search, small enough that no line is touched twice within
-  /// one.
+  /// The parameter between low and high on which the most lines agree, each of which says for
+  /// itself which members of the family it touches; nothing if they are fewer than `least`, or of
+  /// fewer than three cameras. `steps`: of the search, small enough that no line is touched twice
+  /// within one.
   std::optional<Fit> fit(const RoundFamily& family, double low, double high, int steps,
                          int least) const;
 
  private:
+  std::optional<Fit> touched(const RoundFamily& family, double parameter, int least) const;
+
   std::vector<ContourLine> lines_;
   double tolerance_;
 };

@@ -43,6 +43,14 @@ void add_implied(const std::vector<ImpliedStroke>& implied, Completed* out) {
   out->polylines = polylines_of(out->sketch, kPieces);
 }
 
+// Along a smooth rim a cylinder runs into a sphere or a torus, and nothing else begins there.
+void keep_to_rounds(int begin, int end, std::vector<SurfaceStrokes>* surfaces) {
+  const auto is_rim = [&](int s) { return s >= begin && s < end; };
+  for (SurfaceStrokes& s : *surfaces)
+    if (s.surface.kind == SurfaceKind::kPlane || s.surface.kind == SurfaceKind::kCone)
+      s.strokes.erase(std::remove_if(s.strokes.begin(), s.strokes.end(), is_rim), s.strokes.end());
+}
+
 // Lines make planes known, and these further lines: a slot's straight sides hang on its rulings.
 Completed complete(const Sketch& sketch, const std::vector<ContourLine>& contours,
                    double tolerance) {
@@ -61,6 +69,7 @@ Completed complete(const Sketch& sketch, const std::vector<ContourLine>& contour
     if (implied.empty() || k == kRounds) break;
     add_implied(implied, &out);
   }
+  keep_to_rounds(sketch.size(), sketch.size() + int(round.rims.size()), &out.surfaces);
   for (SurfaceStrokes& s : round.surfaces) {
     s.strokes = strokes_on(s.surface, out.polylines, tolerance);
     out.surfaces.push_back(std::move(s));
@@ -68,14 +77,14 @@ Completed complete(const Sketch& sketch, const std::vector<ContourLine>& contour
   return out;
 }
 
-// Two surfaces of a kind that hold the same strokes give the same cells; but of spheres and tori,
-// which bulge as they like.
+// Two surfaces of a kind that hold the same strokes give the same cells; but of those that bulge as
+// they like.
 void drop_doubles(std::vector<Cell>* cells, const std::vector<SurfaceStrokes>& surfaces) {
   std::set<std::pair<bool, std::vector<int>>> seen;
   std::vector<Cell> out;
   for (Cell& cell : *cells) {
     const SurfaceKind kind = surfaces[cell.surface].surface.kind;
-    if (kind == SurfaceKind::kSphere || kind == SurfaceKind::kTorus) {
+    if (surfaces[cell.surface].part) {
       out.push_back(std::move(cell));
       continue;
     }
@@ -89,6 +98,16 @@ void drop_doubles(std::vector<Cell>* cells, const std::vector<SurfaceStrokes>& s
   *cells = std::move(out);
 }
 
+// Does something speak for a cell? Of a round surface the part that contours or rims ask for; a
+// cone's apex that nobody saw may be anywhere.
+bool is_supported(const Cell& cell, const SurfaceStrokes& on) {
+  if (!on.part)
+    return on.surface.kind != SurfaceKind::kCone || cell.polygons.size() == cell.loops.size();
+  const std::vector<Eigen::Vector3d> points = points_within(cell, layout_of(on), 20);
+  const auto within = std::count_if(points.begin(), points.end(), on.part);
+  return 2 * within > long(points.size());
+}
+
 // What it costs to say that a stroke is no edge: its log-odds of being one, within reason.
 double unused_price(const Evidence& evidence) {
   // Something else must have made the edgels, on top.
@@ -98,17 +117,45 @@ double unused_price(const Evidence& evidence) {
   return std::clamp(std::log(c / (1 - c)), kLeast, kMost) + kCause;
 }
 
+double face_price(const Surface& surface, const SolidOptions& options) {
+  const bool rare = surface.kind != SurfaceKind::kPlane && surface.kind != SurfaceKind::kCylinder;
+  return options.face_price + (rare ? options.rare_price : 0);
+}
+
+// Cells that an inferred circle, if it is no edge, leaves as one face.
+std::vector<std::pair<std::pair<int, int>, double>> merges(const Completed& all,
+                                                           const std::vector<Cell>& cells,
+                                                           const SolidOptions& options) {
+  std::map<std::pair<int, int>, std::pair<int, int>> sides;  // of a stroke on a surface
+  for (int c = 0; c < int(cells.size()); ++c)
+    for (const Loop& loop : cells[c].loops)
+      for (const LoopStroke& s : loop) {
+        if (!all.inferred[s.stroke] || !is_closed(all.sketch.strokes[s.stroke].kind)) continue;
+        auto& side =
+            sides.emplace(std::pair(s.stroke, cells[c].surface), std::pair(-1, -1)).first->second;
+        (s.forward ? side.first : side.second) = c;
+      }
+  std::vector<std::pair<std::pair<int, int>, double>> out;
+  for (const auto& [where, pair] : sides)
+    if (pair.first >= 0 && pair.second >= 0)
+      out.push_back({pair, face_price(all.surfaces[where.second].surface, options)});
+  return out;
+}
+
 CellChoice price(const Completed& all, double tolerance, const SolidOptions& options,
                  const SolidEvidence& evidence, EvidenceOfCells* weighed) {
   CellChoice choice;
   for (int i = 0; i < int(all.surfaces.size()); ++i)
     for (Cell& cell : cells_of(all.sketch, all.polylines, all.surfaces[i], i))
-      choice.cells.push_back(std::move(cell));
+      if (is_supported(cell, all.surfaces[i])) choice.cells.push_back(std::move(cell));
   drop_doubles(&choice.cells, all.surfaces);
   *weighed = weigh_cells(evidence, all.surfaces, choice.cells, largest_extent(all.sketch),
                          options.evidence);
-  for (const double against : weighed->against)
-    choice.cell_price.push_back(options.face_price + against);
+  for (size_t c = 0; c < choice.cells.size(); ++c) {
+    const SurfaceStrokes& on = all.surfaces[choice.cells[c].surface];
+    choice.cell_price.push_back(face_price(on.surface, options) + weighed->against[c] - on.bonus);
+  }
+  choice.merges = merges(all, choice.cells, options);
   for (const Meeting& m : weighed->object)
     choice.covers.push_back({m.cells, options.evidence.ray * m.rays});
   choice.exclusive = crossing_cells(all.surfaces, choice.cells, tolerance);

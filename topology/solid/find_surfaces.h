@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "sketches/graph/sketch.h"
@@ -14,6 +15,9 @@ struct SurfaceStrokes {
   Surface surface;
   std::vector<int> strokes;  ///< ascending
   bool around_tube = false;  ///< strokes run around the tube of this torus, not around its axis
+  /// Does a place belong to the part that something speaks for? Empty: all of it.
+  std::function<bool(const Eigen::Vector3d&)> part = {};
+  double bonus = 0;  ///< [nat] by which it is likelier than others of its kind
 };
 
 /// Strokes that lie on a surface, ascending.

@@ -30,6 +30,19 @@ RoundFamily caps(const Rim& rim) {
   };
 }
 
+RoundFamily tips(const Rim& rim) {
+  return [rim](double angle) -> std::optional<RoundPatch> {
+    const double height = rim.radius * std::tan(angle);
+    const Surface cone{SurfaceKind::kCone, rim.centre, rim.axis, rim.radius, -1 / std::tan(angle)};
+    const auto below_apex = [=](const Vector3d& p) {
+      const double up = (p - rim.centre).dot(rim.axis);
+      return up > 0 && up < height;
+    };
+    return RoundPatch{cone, rim.centre + height / 2 * rim.axis,
+                      kRoom * std::hypot(rim.radius, height), below_apex};
+  };
+}
+
 RoundFamily heads(const Rim& rim) {
   return [rim](double height) -> std::optional<RoundPatch> {
     const Vector3d centre = rim.centre + height * rim.axis;

@@ -18,6 +18,9 @@ struct Rim {
 /// centre rises over the rim, seen from it: from -pi / 2, flat, over 0, a half, to pi / 2.
 RoundFamily caps(const Rim& rim);
 
+/// Cones over a rim, on the side of its axis: parameter [rad] is the angle by which they rise.
+RoundFamily tips(const Rim& rim);
+
 /// The round head of a cylinder that rises from a rim: parameter [world units] is the height of the
 /// centre.
 RoundFamily heads(const Rim& rim);
