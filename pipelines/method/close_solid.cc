@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "edges/views/unexplained.h"
 #include "pipelines/survey/observe.h"
 #include "sketches/curve/curve.h"
 
@@ -24,6 +25,7 @@ constexpr double kWithoutMasks = 3;
 constexpr int kSightsPerStroke = 8;  // of one view
 constexpr int kMaskViews = 24, kMaskGrid = 32;
 constexpr int kClearPx = 3;  // [px] around a pixel that the mask must agree on
+constexpr int kContourLines = 600, kLeastChain = 12;
 
 void add_sights(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {
   const Observation o = observe_places(sketch, world);
@@ -87,11 +89,36 @@ void add_rays(const View& view, const Image<uint8_t>& mask, const EdgeWorld& wor
     }
 }
 
+// Every so many edgels of those that no stroke explains: as a rule, contours of round surfaces.
+// With masks, those of their outlines, which are nothing else.
+void add_contours(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {
+  const SampleLayout layout = plan_samples(sketch, 2 * world.footprint);
+  const Samples samples = evaluate_samples(sketch, layout);
+  EdgelFlags explained = no_edgels(world);
+  explain(world, {samples.position, samples.tangent, layout.first}, {}, &explained);
+  const EdgeWorld rest = unexplained(world, explained, kLeastChain);
+  bool masked = false;
+  for (const EdgelMap& map : world.maps) masked |= map.mask.width > 0;
+  size_t edgels = 0, passed = 0;
+  for (const EdgelMap& map : rest.maps)
+    for (const Edgel& e : map.edgels) edgels += e.outline || !masked;
+  const size_t step = 1 + edgels / kContourLines;
+  for (size_t v = 0; v < rest.views.size(); ++v)
+    for (const Edgel& e : rest.maps[v].edgels) {
+      if ((masked && !e.outline) || passed++ % step != 0) continue;
+      const Vector3d ray = rest.views[v].camera.ray(Vector2d(e.x, e.y));
+      evidence->contours.push_back(
+          {rest.views[v].center_in_world(),
+           (rest.views[v].cam_from_world.rotation.transpose() * ray).normalized()});
+    }
+}
+
 }  // namespace
 
 SolidEvidence solid_evidence(const Sketch& sketch, const EdgeWorld& world) {
   SolidEvidence evidence;
   add_sights(sketch, world, &evidence);
+  add_contours(sketch, world, &evidence);
   const int views = int(world.views.size()), used = std::min(views, kMaskViews);
   for (int i = 0; i < used; ++i) {
     const int v = i * views / used;

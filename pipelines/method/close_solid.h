@@ -8,8 +8,8 @@
 
 namespace sketchsplat {
 
-/// Which places of the strokes each view sees, and rays through pixels well inside and well outside
-/// of the masks.
+/// Which places of the strokes each view sees, rays through pixels well inside and well outside of
+/// the masks, and lines of sight through edgels that no stroke explains.
 SolidEvidence solid_evidence(const Sketch& sketch, const EdgeWorld& world);
 
 /// The solid that the strokes bound, or why there is none; see find_solid.h. Never throws for want

@@ -6,13 +6,9 @@ namespace sketchsplat {
 using Eigen::Vector3d;
 
 const char* surface_name(SurfaceKind kind) {
-  constexpr const char* kNames[kNumSurfaceKinds] = {"plane", "cylinder", "cone", "sphere", "torus"};
+  constexpr const char* kNames[kNumSurfaceKinds] = {"plane",  "cylinder", "cone",
+                                                    "sphere", "torus",    "extrusion"};
   return kNames[int(kind)];
-}
-
-double surface_distance(const Surface& s, const Vector3d& point) {
-  return surface_distance<double>(s.kind, s.origin, s.axis, s.radius, s.slope, s.minor_radius,
-                                  point);
 }
 
 Solid scaled(Solid solid, double factor) {
@@ -22,6 +18,7 @@ Solid scaled(Solid solid, double factor) {
     surface.origin *= factor;
     surface.radius *= factor;
     surface.minor_radius *= factor;
+    for (Vector3d& p : surface.profile) p *= factor;
   }
   solid.gap *= factor;
   return solid;

@@ -10,12 +10,12 @@
 
 namespace sketchsplat {
 
-enum class SurfaceKind { kPlane, kCylinder, kCone, kSphere, kTorus };
-constexpr int kNumSurfaceKinds = 5;
+enum class SurfaceKind { kPlane, kCylinder, kCone, kSphere, kTorus, kExtrusion };
+constexpr int kNumSurfaceKinds = 6;
 const char* surface_name(SurfaceKind kind);  ///< "plane", "cylinder", ...
 
 // clang-format off
-/// An unbounded surface of revolution or a plane. World units.
+/// An unbounded surface of revolution, a plane, or what a curve sweeps. World units.
 ///   plane     origin: any point of it      axis: unit normal
 ///   cylinder  origin: any point of its axis                       radius
 ///   cone      origin: a point of its axis, where it has `radius`; slope: change of the radius per
@@ -23,6 +23,8 @@ const char* surface_name(SurfaceKind kind);  ///< "plane", "cylinder", ...
 ///   sphere    origin: centre               axis: any               radius
 ///   torus     origin: centre               axis                    radius: of the centres' circle
 ///             minor_radius: of the tube
+///   extrusion origin: of no account    axis: along which the profile is moved, never tangent to it
+///             profile: a plane curve; its normal is along the profile's direction x axis
 // clang-format on
 struct Surface {
   SurfaceKind kind = SurfaceKind::kPlane;
@@ -31,6 +33,8 @@ struct Surface {
   double radius = 0;
   double slope = 0;
   double minor_radius = 0;
+  StrokeKind profile_kind = StrokeKind::kLine;
+  std::vector<Eigen::Vector3d> profile = {};  ///< control points, see StrokeKind
 };
 
 /// A bounded part of a surface. Seen from outside the solid its loops run counter-clockwise about
@@ -39,7 +43,8 @@ struct Surface {
 struct SolidFace {
   int surface = -1;         ///< index into Solid::surfaces
   bool reversed = false;    ///< out of the material is against the surface's normal: away from the
-                            ///< axis, the centre or a torus' circle of centres, of a plane its axis
+                            ///< axis, the centre or a torus' circle of centres, of a plane its
+                            ///< axis, of an extrusion its profile's direction x axis
   std::vector<Loop> loops;  ///< over the strokes of Solid::edges
 };
 
@@ -58,8 +63,8 @@ struct Solid {
 
 /// Signed distance [world units] of a point from a surface: positive on the side of its normal,
 /// which points away from the axis, the centre or the circle of centres; of a plane along its axis.
-/// Beyond the apex of a cone the radius is counted on. The first form takes the parameters as
-/// scalars, for solvers that ask for derivatives.
+/// Beyond the apex of a cone the radius is counted on. Parameters are scalars, for solvers that ask
+/// for derivatives. Not of extrusions: see topology/solid/surface.h.
 template <typename T>
 T surface_distance(SurfaceKind kind, const Eigen::Matrix<T, 3, 1>& origin,
                    const Eigen::Matrix<T, 3, 1>& axis, const T& radius, const T& slope,
@@ -78,7 +83,6 @@ T surface_distance(SurfaceKind kind, const Eigen::Matrix<T, 3, 1>& origin,
   const T ring = out - radius;
   return sqrt(ring * ring + along * along + least) - minor_radius;
 }
-double surface_distance(const Surface& surface, const Eigen::Vector3d& point);
 
 /// The same solid, larger by a factor > 0 about the origin.
 Solid scaled(Solid solid, double factor);

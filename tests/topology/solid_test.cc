@@ -211,11 +211,13 @@ TEST(Surface, CrossingsLieOnTheSurfaceAndNoneIsMissed) {
   const Vector3d axis = Vector3d(1, 2, 2) / 3;
   for (const Surface& s : {Surface{SurfaceKind::kPlane, {0.1, 0, 0}, axis},
                            Surface{SurfaceKind::kCylinder, {0.1, 0, 0}, axis, 0.8},
-                           Surface{SurfaceKind::kCone, {0.1, 0, 0}, axis, 3, 0.4}})
+                           Surface{SurfaceKind::kCone, {0.1, 0, 0}, axis, 3, 0.4},
+                           Surface{SurfaceKind::kSphere, {0.1, 0, 0}, axis, 0.8},
+                           Surface{SurfaceKind::kTorus, {0.1, 0, 0}, axis, 0.8, 0, 0.4}})
     for (int trial = 0; trial < 200; ++trial) {
       const Vector3d from(place(random), place(random), place(random)),
           to(place(random), place(random), place(random));
-      const Crossings at = crossings(s, from, to);
+      const Crossings at = crossings(Layout(s), from, to);
       for (int k = 0; k < at.count; ++k)
         EXPECT_NEAR(surface_distance(s, from + at.t[k] * (to - from)), 0, 1e-9);
       const bool apart = surface_distance(s, from) * surface_distance(s, to) < 0;
@@ -227,9 +229,11 @@ TEST(Surface, ALayoutFoldsBack) {
   const Vector3d axis = Vector3d(1, 2, 2) / 3;
   for (const Surface& s : {Surface{SurfaceKind::kPlane, {0.1, 0, 0}, axis},
                            Surface{SurfaceKind::kCylinder, {0.1, 0, 0}, axis, 0.8},
-                           Surface{SurfaceKind::kCone, {0.1, 0, 0}, axis, 0.8, 0.4}}) {
-    const Layout layout(s);
+                           Surface{SurfaceKind::kCone, {0.1, 0, 0}, axis, 0.8, 0.4},
+                           Surface{SurfaceKind::kSphere, {0.1, 0, 0}, axis, 0.8},
+                           Surface{SurfaceKind::kTorus, {0.1, 0, 0}, axis, 0.8, 0, 0.6}}) {
     for (const double u : {-1.0, 0.2, 1.5}) {
+      const Layout layout(s, /*around_tube=*/u < 0);
       const Eigen::Vector2d flat(u, 0.3);
       EXPECT_NEAR((layout.flat(layout.point(flat)) - flat).norm(), 0, 1e-12);
       EXPECT_NEAR(surface_distance(s, layout.point(flat)), 0, 1e-12);

@@ -18,13 +18,17 @@ constexpr int kPlaces = 65;
 // How far the stroke may be from where the surfaces meet; of its length.
 constexpr double kAside = 0.1;
 
+double distance_from(const Surface& s, const Vector3d& p) {
+  return surface_distance<double>(s.kind, s.origin, s.axis, s.radius, s.slope, s.minor_radius, p);
+}
+
 // Derivatives of the signed distance, by central differences of a length at which digits are left.
 Vector3d gradient(const Surface& surface, const Vector3d& p, double step) {
   Vector3d out;
   for (int k = 0; k < 3; ++k) {
     const Vector3d aside = Vector3d::Unit(k) * step;
     out[k] =
-        (surface_distance(surface, p + aside) - surface_distance(surface, p - aside)) / (2 * step);
+        (distance_from(surface, p + aside) - distance_from(surface, p - aside)) / (2 * step);
   }
   return out;
 }
@@ -35,7 +39,7 @@ Vector3d meeting_near(const Surface& a, const Surface& b, Vector3d p, double ste
   for (int i = 0; i < kSteps; ++i) {
     Eigen::Matrix<double, 2, 3> slope;
     slope << gradient(a, p, step).transpose(), gradient(b, p, step).transpose();
-    const Eigen::Vector2d off(surface_distance(a, p), surface_distance(b, p));
+    const Eigen::Vector2d off(distance_from(a, p), distance_from(b, p));
     p -= slope.completeOrthogonalDecomposition().solve(off);
   }
   return p;
@@ -45,7 +49,9 @@ Vector3d meeting_near(const Surface& a, const Surface& b, Vector3d p, double ste
 
 void trace(const Sketch& sketch, int stroke, double near, const Surface& a, const Surface& b,
            EdgeCurve* curve) {
-  if (curve->closed) return;
+  // Rims of an extrusion are copies of its profile.
+  const bool extruded = a.kind == SurfaceKind::kExtrusion || b.kind == SurfaceKind::kExtrusion;
+  if (curve->closed || extruded) return;
   const double length = stroke_length(sketch, stroke);
   const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, kPlaces);
   double off = 0, aside = 0, left = 0;
@@ -53,7 +59,7 @@ void trace(const Sketch& sketch, int stroke, double near, const Surface& a, cons
     Vector3d p, d;
     evaluate_stroke(sketch, stroke, i / (kPlaces - 1.0), &p, &d);
     const auto distance = [&](const Vector3d& x) {
-      return std::max(std::abs(surface_distance(a, x)), std::abs(surface_distance(b, x)));
+      return std::max(std::abs(distance_from(a, x)), std::abs(distance_from(b, x)));
     };
     const Vector3d met = meeting_near(a, b, p, 1e-5 * length);
     off = std::max(off, distance(p));

@@ -27,7 +27,7 @@ double signed_area(const Matrix2Xd& polygon) {
 class Graph {
  public:
   Graph(const Sketch& sketch, const std::vector<int>& members, const std::vector<Matrix2Xd>& lines,
-        double period)
+        const Vector2d& period)
       : sketch_(sketch),
         members_(members),
         alive_(members.size(), true),
@@ -47,8 +47,8 @@ class Graph {
       for (const std::vector<int>& simple : cut_at_repeated_nodes(walks[w])) {
         Cycle c;
         for (const int h : simple) c.loop.push_back({members_[h / 2], h % 2 == 0});
-        c.polygon = polygon_of(simple, &c.turns);
-        c.area = c.turns == 0 ? signed_area(c.polygon) : 0;
+        c.polygon = polygon_of(simple, &c.turns, &c.turns_across);
+        c.area = c.turns == 0 && c.turns_across == 0 ? signed_area(c.polygon) : 0;
         c.part = part[simple[0] / 2];
         c.walk = int(w);
         out.push_back(c);
@@ -165,20 +165,27 @@ class Graph {
   }
 
   // Without its last point, which is the first one after so many turns.
-  Matrix2Xd polygon_of(const std::vector<int>& half_edges, int* turns) const {
+  Matrix2Xd polygon_of(const std::vector<int>& half_edges, int* turns, int* across) const {
     std::vector<Vector2d> points;
-    double shift = 0;  // of this stroke, so that it goes on where the last one ended
-    const auto whole = [&](double u) { return period_ > 0 ? std::round(u / period_) : 0.0; };
-    Vector2d last = Vector2d::Zero();
+    // Of this stroke, so that it goes on where the last one ended.
+    Vector2d shift = Vector2d::Zero(), last = shift;
+    const auto whole = [&](const Vector2d& by) {
+      Vector2d out = Vector2d::Zero();
+      for (int k = 0; k < 2; ++k)
+        if (period_[k] > 0) out[k] = std::round(by[k] / period_[k]);
+      return out;
+    };
     for (const int h : half_edges) {
       const Matrix2Xd& l = lines_[h / 2];
       const int n = int(l.cols());
       const auto at = [&](int i) -> Vector2d { return l.col(h % 2 == 0 ? i : n - 1 - i); };
-      if (!points.empty()) shift = whole(last.x() - at(0).x()) * period_;
-      for (int i = 0; i + 1 < n; ++i) points.push_back(at(i) + Vector2d(shift, 0));
-      last = at(n - 1) + Vector2d(shift, 0);
+      if (!points.empty()) shift = whole(last - at(0)).cwiseProduct(period_);
+      for (int i = 0; i + 1 < n; ++i) points.push_back(at(i) + shift);
+      last = at(n - 1) + shift;
     }
-    *turns = int(whole(last.x() - points[0].x()));
+    const Vector2d around = whole(last - points[0]);
+    *turns = int(around.x());
+    *across = int(around.y());
     Matrix2Xd polygon(2, points.size());
     for (size_t i = 0; i < points.size(); ++i) polygon.col(i) = points[i];
     return polygon;
@@ -206,13 +213,13 @@ class Graph {
   const std::vector<int>& members_;
   std::vector<bool> alive_;
   const std::vector<Matrix2Xd>& lines_;
-  double period_;
+  Vector2d period_;
 };
 
 }  // namespace
 
 std::vector<Cycle> simple_cycles(const Sketch& sketch, const std::vector<int>& members,
-                                 const std::vector<Matrix2Xd>& lines, double period) {
+                                 const std::vector<Matrix2Xd>& lines, const Vector2d& period) {
   return Graph(sketch, members, lines, period).cycles();
 }
 

@@ -36,7 +36,8 @@ std::vector<Cell> merged(const Sketch& sketch, const std::vector<Matrix3Xd>& pol
                          const std::vector<const Cell*>& chosen) {
   std::set<HalfEdge> all;
   for (const Cell* cell : chosen) all.merge(half_edges(*cell));
-  SurfaceStrokes border{surface.surface, {}};
+  SurfaceStrokes border = surface;
+  border.strokes.clear();
   for (const int s : surface.strokes)
     if (all.count({s, true}) != all.count({s, false})) border.strokes.push_back(s);
   std::vector<Cell> out;
@@ -85,7 +86,7 @@ bool turn_alike(std::vector<Patch>* patches, std::vector<int>* part) {
 int hits(const std::vector<Patch>& patches, const Vector3d& from, const Vector3d& to) {
   int count = 0;
   for (const Patch& p : patches) {
-    const Crossings c = crossings(p.surface, from, to);
+    const Crossings c = crossings(p.layout, from, to);
     for (int i = 0; i < c.count; ++i)
       count += holds(p.cell, p.layout, p.layout.flat(Vector3d(from + c.t[i] * (to - from))));
   }
@@ -128,7 +129,7 @@ bool assemble(const Sketch& sketch, const std::vector<bool>& inferred,
       if (cells[c].surface == i && chosen.cell[c]) own.push_back(&cells[c]);
     if (own.empty()) continue;
     for (const Cell& cell : merged(sketch, polylines, surfaces[i], i, own))
-      patches.push_back({surfaces[i].surface, Layout(surfaces[i].surface), cell});
+      patches.push_back({surfaces[i].surface, layout_of(surfaces[i]), cell});
   }
   std::vector<int> part;
   if (patches.empty() || !turn_alike(&patches, &part)) {

@@ -32,8 +32,8 @@ double height(const Cycle& c) { return c.polygon.row(1).mean(); }
 
 class Assembly {
  public:
-  Assembly(const std::vector<Cycle>& cycles, const Surface& surface, double period, int index)
-      : cycles_(cycles), surface_(surface), period_(period), index_(index) {}
+  Assembly(const std::vector<Cycle>& cycles, const Layout& layout, int index)
+      : cycles_(cycles), layout_(layout), period_(layout.periods()), index_(index) {}
 
   std::vector<Cell> cells() {
     for (int i = 0; i < int(cycles_.size()); ++i) {
@@ -57,36 +57,43 @@ class Assembly {
     cell->polygons.push_back(cycles_[cycle].polygon);
   }
 
-  // Between a cycle that runs around and the next one above it; a cone may end in its apex instead.
+  // Between a cycle that runs around and the next one above it; a cone may end in its apex instead,
+  // and a sphere in a pole.
   void start_band(int cycle) {
     const Cycle& c = cycles_[cycle];
     int other = -1;
     for (int k = 0; k < int(cycles_.size()); ++k) {
-      const double rise = (height(cycles_[k]) - height(c)) * c.turns;
-      if (cycles_[k].turns != -c.turns || cycles_[k].part == c.part || rise <= 0) continue;
-      if (other < 0 || rise < (height(cycles_[other]) - height(c)) * c.turns) other = k;
+      if (cycles_[k].turns != -c.turns || cycles_[k].part == c.part || !(rise(cycle, k) > 0))
+        continue;
+      if (other < 0 || rise(cycle, k) < rise(cycle, other)) other = k;
     }
     // The next one upwards must look back at this one: else a cycle of the same sense is between.
     if (other >= 0 && c.turns > 0 && !blocked(cycle, other)) {
       start(cycle);
+      const double up = height(c) + rise(cycle, other) - height(cycles_[other]);
       add(other, &cells_.back());
-    } else if (other < 0 && surface_.slope * c.turns < 0) {
+      cells_.back().polygons.back().row(1).array() += up;
+    } else if (other < 0 && !std::isnan(layout_.pole(c.turns))) {
       start(cycle);
-      cells_.back().polygons.push_back(apex());
+      cells_.back().polygons.push_back(pole(layout_.pole(c.turns)));
     }
   }
-  // Where the radius of a cone vanishes: a line along the whole layout.
-  Matrix2Xd apex() const {
+  // How far a cycle lies to the left of another one, in its direction; on a torus by the way there.
+  double rise(int from, int to) const {
+    const double up = (height(cycles_[to]) - height(cycles_[from])) * cycles_[from].turns;
+    return period_.y() > 0 ? up - period_.y() * std::floor(up / period_.y()) : up;
+  }
+  // What is one point, as a line along the whole layout.
+  Matrix2Xd pole(double at) const {
     Matrix2Xd line(2, 8);
-    for (int i = 0; i < 8; ++i)
-      line.col(i) = Vector2d(i * period_ / 8, -surface_.radius / surface_.slope);
+    for (int i = 0; i < 8; ++i) line.col(i) = Vector2d(i * period_.x() / 8, at);
     return line;
   }
   bool blocked(int low, int high) const {
     for (int k = 0; k < int(cycles_.size()); ++k)
       if (cycles_[k].part != cycles_[low].part && cycles_[k].part != cycles_[high].part &&
-          cycles_[k].turns == cycles_[low].turns && height(cycles_[k]) > height(cycles_[low]) &&
-          height(cycles_[k]) < height(cycles_[high]))
+          cycles_[k].turns == cycles_[low].turns && rise(low, k) > 0 &&
+          rise(low, k) < rise(low, high))
         return true;
     return false;
   }
@@ -103,7 +110,7 @@ class Assembly {
     for (int i = 0; i < int(cells_.size()); ++i) {
       const Cycle& outer = cycles_[first_[i]];
       if (outer.part == h.part) continue;
-      if (outer.turns == 0 ? !lies_in(h, outer, period_) : !in_band(h, cells_[i])) continue;
+      if (outer.turns == 0 ? !lies_in(h, outer, period_.x()) : !in_band(h, cells_[i])) continue;
       const auto area = [&](int k) {
         const Cycle& c = cycles_[first_[k]];
         return c.turns == 0 ? c.area : HUGE_VAL;
@@ -118,13 +125,17 @@ class Assembly {
   }
   bool in_band(const Cycle& h, const Cell& band) const {
     if (band.polygons.size() < 2) return false;
-    const double low = band.polygons[0].row(1).mean(), high = band.polygons[1].row(1).mean();
-    return height(h) > low && height(h) < high;
+    double low = band.polygons[0].row(1).mean(), high = band.polygons[1].row(1).mean();
+    if (low > high) std::swap(low, high);
+    const double at = period_.y() > 0
+                          ? height(h) - period_.y() * std::floor((height(h) - low) / period_.y())
+                          : height(h);
+    return at > low && at < high;
   }
 
   const std::vector<Cycle>& cycles_;
-  const Surface& surface_;
-  double period_;
+  const Layout& layout_;
+  Vector2d period_;
   int index_;
   std::vector<Cell> cells_;
   std::vector<int> first_;  // cycle of each cell
@@ -160,11 +171,13 @@ FlatBox box_of(const Cell& cell) {
 
 std::vector<Cell> cells_of(const Sketch& sketch, const std::vector<Eigen::Matrix3Xd>& polylines,
                            const SurfaceStrokes& surface, int index) {
-  const Layout layout(surface.surface);
+  const Layout layout = layout_of(surface);
   std::vector<Matrix2Xd> lines;
   for (const int s : surface.strokes) lines.push_back(layout.flat(polylines[s]));
-  const std::vector<Cycle> cycles = simple_cycles(sketch, surface.strokes, lines, layout.period());
-  return Assembly(cycles, surface.surface, layout.period(), index).cells();
+  const std::vector<Cycle> cycles = simple_cycles(sketch, surface.strokes, lines, layout.periods());
+  const auto across = [](const Cycle& c) { return c.turns_across != 0; };
+  if (std::any_of(cycles.begin(), cycles.end(), across)) return {};  // laid out the other way round
+  return Assembly(cycles, layout, index).cells();
 }
 
 bool holds(const Cell& cell, const Layout& layout, const Vector2d& flat) {
@@ -173,10 +186,14 @@ bool holds(const Cell& cell, const Layout& layout, const Vector2d& flat) {
     for (const Matrix2Xd& polygon : cell.polygons) around += is_inside(flat, polygon);
     return around % 2 == 1;
   }
-  int above = 0;
-  for (const Matrix2Xd& polygon : cell.polygons)
-    above += crossings_above(polygon, flat, layout.period());
-  return above % 2 == 1;
+  const double again = layout.periods().y();
+  for (int k = again > 0 ? -1 : 0; k <= (again > 0 ? 1 : 0); ++k) {
+    int above = 0;
+    for (const Matrix2Xd& polygon : cell.polygons)
+      above += crossings_above(polygon, flat + Vector2d(0, k * again), layout.period());
+    if (above % 2 == 1) return true;
+  }
+  return false;
 }
 
 std::vector<Vector3d> points_within(const Cell& cell, const Layout& layout, int count) {

@@ -17,30 +17,34 @@ namespace sketchsplat {
 struct Cell {
   int surface = -1;
   std::vector<Loop> loops;
-  /// Of the loops, in the surface's layout; one more at the apex of a cone that it ends in.
+  /// Of the loops, in the surface's layout without jumps of a period; one more at the apex of a
+  /// cone or the pole of a sphere that it ends in.
   std::vector<Eigen::Matrix2Xd> polygons;
 };
 
 /// All bounded cells between the strokes of a surface. Strokes that bound none, and those on both
-/// of whose sides the same cell lies, are passed over. Of a cone the piece up to its apex counts as
-/// bounded. `index` is copied to Cell::surface.
+/// of whose sides the same cell lies, are passed over. A piece up to the apex of a cone or the pole
+/// of a sphere counts as bounded. `index` is copied to Cell::surface.
 std::vector<Cell> cells_of(const Sketch& sketch, const std::vector<Eigen::Matrix3Xd>& polylines,
                            const SurfaceStrokes& surface, int index);
 
-/// Around a cell in its layout; the first coordinate says nothing where the surface closes.
+/// Around a cell in its layout; coordinates along which the surface closes say nothing.
 struct FlatBox {
   Eigen::Vector2d low, size;
   Eigen::Vector2d at(double u, double v) const {
     return low + Eigen::Vector2d(u * size.x(), v * size.y());
   }
-  bool holds(const Eigen::Vector2d& p, bool closed) const {
+  bool holds(const Eigen::Vector2d& p, const Eigen::Vector2d& periods) const {
     const Eigen::Vector2d in = p - low;
-    return in.y() >= 0 && in.y() <= size.y() && (closed || (in.x() >= 0 && in.x() <= size.x()));
+    return (periods.y() > 0 || (in.y() >= 0 && in.y() <= size.y())) &&
+           (periods.x() > 0 || (in.x() >= 0 && in.x() <= size.x()));
   }
 };
 FlatBox box_of(const Cell& cell);
 
-/// Is a point of the layout in the cell? The first coordinate may be off by periods.
+inline Layout layout_of(const SurfaceStrokes& s) { return Layout(s.surface, s.around_tube); }
+
+/// Is a point of the layout in the cell? Coordinates may be off by periods.
 bool holds(const Cell& cell, const Layout& layout, const Eigen::Vector2d& flat);
 
 /// About `count` points spread evenly over a cell, on the surface and off its border; at least one

@@ -85,6 +85,13 @@ void cover(const Cover& cover, Programme* programme) {
   programme->add_row(sum, 'G', 1);
 }
 
+// One face costs less than two.
+void merge(int a, int b, double saved, Programme* programme) {
+  const int both = programme->add_column(-saved);
+  programme->add_row({{both, 1}, {a, -1}}, 'L', 0);
+  programme->add_row({{both, 1}, {b, -1}}, 'L', 0);
+}
+
 void exclude(const ChosenCells& other, Programme* programme) {
   std::map<int, double> sum;
   int chosen = 0;
@@ -142,6 +149,7 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   }
   for (const auto& [a, b] : choice.exclusive) programme.add_row({{a, 1}, {b, 1}}, 'L', 1);
   for (const Cover& c : choice.covers) cover(c, &programme);
+  for (const auto& [pair, saved] : choice.merges) merge(pair.first, pair.second, saved, &programme);
   for (const ChosenCells& other : others) exclude(other, &programme);
   add_doubles(choice, cells, &programme);
 
@@ -156,6 +164,8 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
     out.price += out.stroke[s]  ? choice.used_price[s]
                  : out.twice[s] ? std::min(choice.double_price, choice.unused_price[s])
                                 : choice.unused_price[s];
+  for (const auto& [pair, saved] : choice.merges)
+    out.price -= out.cell[pair.first] && out.cell[pair.second] ? saved : 0;
   for (const Cover& c : choice.covers) {
     int met = 0;
     for (const int cell : c.cells) met += out.cell[cell];

@@ -31,6 +31,9 @@ struct CellChoice {
   std::vector<Cover> covers;
   std::vector<Double> doubles;
   double double_price = 0;  ///< [nat] of a stroke that is other edges seen twice
+  /// Cells of one surface on both sides of a closed stroke, and what it saves [nat] to choose both:
+  /// they are one face then.
+  std::vector<std::pair<std::pair<int, int>, double>> merges;
 };
 
 struct ChosenCells {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "topology/solid/complete.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -8,7 +9,6 @@
 #include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
 #include "topology/faces/find_planes.h"
-#include "topology/solid/infer_edges.h"
 
 namespace sketchsplat {
 namespace {
@@ -64,6 +64,14 @@ void cut_overlaps(double tolerance, Sketch* sketch) {
     }
 }
 
+// Along a smooth rim a cylinder runs into a sphere or a torus, and nothing else begins there.
+void keep_to_rounds(int begin, int end, std::vector<SurfaceStrokes>* surfaces) {
+  const auto is_rim = [&](int s) { return s >= begin && s < end; };
+  for (SurfaceStrokes& s : *surfaces)
+    if (s.surface.kind == SurfaceKind::kPlane || s.surface.kind == SurfaceKind::kCone)
+      s.strokes.erase(std::remove_if(s.strokes.begin(), s.strokes.end(), is_rim), s.strokes.end());
+}
+
 }  // namespace
 
 void Completed::add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
@@ -72,25 +80,37 @@ void Completed::add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
   origin.push_back(from);
 }
 
+void Completed::add(const ImpliedStroke& s) {
+  add(s.smooth ? EdgeOrigin::kSmooth : EdgeOrigin::kFaint, s.kind, s.begin, s.end, s.handles);
+}
+
 void imply(double tolerance, double slide, Completed* all) {
   for (int round = 0;; ++round) {
     all->polylines = polylines_of(all->sketch, kPieces);
     all->surfaces = find_surfaces(all->sketch, all->polylines, tolerance);
     const std::vector<ImpliedStroke> implied =
         implied_strokes(all->seen, all->sketch, all->surfaces, tolerance, slide);
-    if (implied.empty() || round == kRounds) return;
-    for (const ImpliedStroke& s : implied)
-      all->add(s.smooth ? EdgeOrigin::kSmooth : EdgeOrigin::kFaint, s.kind, s.begin, s.end,
-               s.handles);
+    if (implied.empty() || round == kRounds) break;
+    for (const ImpliedStroke& s : implied) all->add(s);
+  }
+  keep_to_rounds(all->seen.size(), all->seen.size() + int(all->round.rims.size()), &all->surfaces);
+  for (SurfaceStrokes s : all->round.surfaces) {
+    s.strokes = strokes_on(s.surface, all->polylines, tolerance);
+    all->surfaces.push_back(std::move(s));
   }
 }
 
-Completed complete(const Sketch& seen, double tolerance, double slide) {
+Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours, double tolerance,
+                   double slide) {
   Completed out;
   out.seen = seen;
   cut_overlaps(tolerance, &out.seen);
   out.sketch = out.seen;
   out.origin.assign(seen.size(), EdgeOrigin::kSeen);
+  out.polylines = polylines_of(out.sketch, kPieces);
+  out.surfaces = find_surfaces(out.sketch, out.polylines, tolerance);
+  out.round = round_candidates(out.sketch, out.polylines, out.surfaces, contours, tolerance);
+  for (const ImpliedStroke& s : out.round.rims) out.add(s);
   imply(tolerance, slide, &out);
   return out;
 }

@@ -6,6 +6,8 @@
 
 #include "sketches/graph/sketch.h"
 #include "topology/solid/find_surfaces.h"
+#include "topology/solid/infer_edges.h"
+#include "topology/solid/round_candidates.h"
 
 namespace sketchsplat {
 
@@ -24,15 +26,18 @@ struct Completed {
   std::vector<Eigen::Matrix3Xd> polylines;
   std::vector<SurfaceStrokes> surfaces;
   std::vector<EdgeOrigin> origin;  ///< per stroke
+  RoundCandidates round;           ///< that the strokes which are seen ask for
 
   void add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
            const std::vector<Eigen::Vector3d>& handles);
+  void add(const ImpliedStroke& implied);
 };
 
 /// Adds edges that surfaces imply, and finds all surfaces, until there are no more. `tolerance`: of
 /// a stroke from the surface that it lies on, world units.
 void imply(double tolerance, double slide, Completed* all);
-Completed complete(const Sketch& seen, double tolerance, double slide);
+Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours, double tolerance,
+                   double slide);
 
 /// Copies closed loops of strokes in a plane, all of which are `left` (per stroke that is seen: it
 /// bounds no face that closes), along the normal of the plane, to the depths that other such

@@ -33,7 +33,7 @@ struct Placed {
 bool runs_through(const std::vector<Segment>& segments, const Placed& own, const Placed& other,
                   double tolerance) {
   for (const Segment& s : segments) {
-    const Crossings at = crossings(other.surface, s.from, s.to);
+    const Crossings at = crossings(other.layout, s.from, s.to);
     for (int k = 0; k < at.count; ++k) {
       const Vector3d p = s.from + at.t[k] * (s.to - s.from);
       if (holds_well(other.cell, other.layout, p, 2 * tolerance) &&
@@ -49,7 +49,7 @@ bool runs_through(const std::vector<Segment>& segments, const Placed& own, const
 std::vector<std::pair<int, int>> crossing_cells(const std::vector<SurfaceStrokes>& surfaces,
                                                 const std::vector<Cell>& cells, double tolerance) {
   std::vector<Layout> layouts;
-  for (const SurfaceStrokes& s : surfaces) layouts.emplace_back(s.surface);
+  for (const SurfaceStrokes& s : surfaces) layouts.push_back(layout_of(s));
   std::vector<std::vector<Segment>> segments;
   for (const Cell& cell : cells) {
     segments.emplace_back();

@@ -14,7 +14,7 @@ class Scales {
  public:
   Scales(const std::vector<SurfaceStrokes>& surfaces, const std::vector<Cell>& cells)
       : surfaces_(surfaces), cells_(cells), of_surface_(surfaces.size()) {
-    for (const SurfaceStrokes& s : surfaces) layouts_.emplace_back(s.surface);
+    for (const SurfaceStrokes& s : surfaces) layouts_.push_back(layout_of(s));
     for (int c = 0; c < int(cells.size()); ++c) {
       of_surface_[cells[c].surface].push_back(c);
       boxes_.push_back(box_of(cells[c]));
@@ -26,12 +26,11 @@ class Scales {
     std::vector<int> out;
     for (size_t i = 0; i < surfaces_.size(); ++i) {
       if (of_surface_[i].empty()) continue;
-      const Crossings at = crossings(surfaces_[i].surface, from, to);
+      const Crossings at = crossings(layouts_[i], from, to);
       for (int k = 0; k < at.count && at.t[k] < end; ++k) {
         const Eigen::Vector2d flat = layouts_[i].flat(Vector3d(from + at.t[k] * (to - from)));
         for (const int c : of_surface_[i])
-          if (boxes_[c].holds(flat, layouts_[i].period() > 0) &&
-              holds(cells_[c], layouts_[i], flat))
+          if (boxes_[c].holds(flat, layouts_[i].periods()) && holds(cells_[c], layouts_[i], flat))
             out.push_back(c);
       }
     }

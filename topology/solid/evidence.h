@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "topology/solid/cells.h"
+#include "topology/solid/contours.h"
 
 namespace sketchsplat {
 
@@ -25,6 +26,7 @@ struct MaskRay {
 struct SolidEvidence {
   std::vector<Sight> sights;
   std::vector<MaskRay> rays;
+  std::vector<ContourLine> contours;
 };
 
 struct EvidencePrices {

@@ -20,19 +20,35 @@
 namespace sketchsplat {
 namespace {
 
-// Two surfaces of a kind that hold the same strokes give the same cells.
+// Two surfaces of a kind that hold the same strokes give the same cells; but of those that bulge as
+// they like.
 void drop_doubles(std::vector<Cell>* cells, const std::vector<SurfaceStrokes>& surfaces) {
   std::set<std::pair<bool, std::vector<int>>> seen;
   std::vector<Cell> out;
   for (Cell& cell : *cells) {
+    const SurfaceKind kind = surfaces[cell.surface].surface.kind;
+    if (surfaces[cell.surface].part) {
+      out.push_back(std::move(cell));
+      continue;
+    }
     std::vector<int> strokes;
     for (const Loop& loop : cell.loops)
       for (const LoopStroke& s : loop) strokes.push_back(s.stroke);
     std::sort(strokes.begin(), strokes.end());
-    const bool planar = surfaces[cell.surface].surface.kind == SurfaceKind::kPlane;
+    const bool planar = kind == SurfaceKind::kPlane;
     if (seen.emplace(planar, strokes).second) out.push_back(std::move(cell));
   }
   *cells = std::move(out);
+}
+
+// Does something speak for a cell? Of a round surface the part that contours or rims ask for; a
+// cone's apex that nobody saw may be anywhere.
+bool is_supported(const Cell& cell, const SurfaceStrokes& on) {
+  if (!on.part)
+    return on.surface.kind != SurfaceKind::kCone || cell.polygons.size() == cell.loops.size();
+  const std::vector<Eigen::Vector3d> points = points_within(cell, layout_of(on), 20);
+  const auto within = std::count_if(points.begin(), points.end(), on.part);
+  return 2 * within > long(points.size());
 }
 
 // What it costs to say that a stroke is no edge: its log-odds of being one, within reason.
@@ -79,17 +95,47 @@ std::vector<Double> doubles_of(const Sketch& sketch, const std::vector<bool>& le
   return out;
 }
 
+double face_price(const Surface& surface, const SolidOptions& options) {
+  const bool rare = surface.kind != SurfaceKind::kPlane && surface.kind != SurfaceKind::kCylinder;
+  return options.face_price + (rare ? options.rare_price : 0);
+}
+
+// Cells that an inferred circle, if it is no edge, leaves as one face.
+std::vector<std::pair<std::pair<int, int>, double>> merges(const Completed& all,
+                                                           const std::vector<Cell>& cells,
+                                                           const SolidOptions& options) {
+  std::map<std::pair<int, int>, std::pair<int, int>> sides;  // of a stroke on a surface
+  for (int c = 0; c < int(cells.size()); ++c)
+    for (const Loop& loop : cells[c].loops)
+      for (const LoopStroke& s : loop) {
+        if (all.origin[s.stroke] == EdgeOrigin::kSeen ||
+            !is_closed(all.sketch.strokes[s.stroke].kind))
+          continue;
+        auto& side =
+            sides.emplace(std::pair(s.stroke, cells[c].surface), std::pair(-1, -1)).first->second;
+        (s.forward ? side.first : side.second) = c;
+      }
+  std::vector<std::pair<std::pair<int, int>, double>> out;
+  for (const auto& [where, pair] : sides)
+    if (pair.first >= 0 && pair.second >= 0)
+      out.push_back({pair, face_price(all.surfaces[where.second].surface, options)});
+  return out;
+}
+
 CellChoice price(const Completed& all, double tolerance, const SolidOptions& options,
                  const SolidEvidence& evidence, EvidenceOfCells* weighed) {
   CellChoice choice;
   for (int i = 0; i < int(all.surfaces.size()); ++i)
     for (Cell& cell : cells_of(all.sketch, all.polylines, all.surfaces[i], i))
-      choice.cells.push_back(std::move(cell));
+      if (is_supported(cell, all.surfaces[i])) choice.cells.push_back(std::move(cell));
   drop_doubles(&choice.cells, all.surfaces);
   *weighed = weigh_cells(evidence, all.surfaces, choice.cells, largest_extent(all.sketch),
                          options.evidence);
-  for (const double against : weighed->against)
-    choice.cell_price.push_back(options.face_price + against);
+  for (size_t c = 0; c < choice.cells.size(); ++c) {
+    const SurfaceStrokes& on = all.surfaces[choice.cells[c].surface];
+    choice.cell_price.push_back(face_price(on.surface, options) + weighed->against[c] - on.bonus);
+  }
+  choice.merges = merges(all, choice.cells, options);
   for (const Meeting& m : weighed->object)
     choice.covers.push_back({m.cells, options.evidence.ray * m.rays});
   choice.exclusive = crossing_cells(all.surfaces, choice.cells, tolerance);
@@ -112,7 +158,7 @@ class Search {
         slide_(slide),
         options_(options),
         evidence_(evidence),
-        all_(complete(sketch, tolerance, slide)) {}
+        all_(complete(sketch, evidence.contours, tolerance, slide)) {}
 
   SolidSearch plain() { return run(std::vector<bool>(sketch_.size())); }
 

@@ -13,11 +13,13 @@ namespace sketchsplat {
 struct SolidOptions {
   double tolerance = 1.5e-3;  ///< of a stroke from the surface that it lies on; of the extent
   double face_price = 3;      ///< [nat] of a face
-  double smooth_price = 1;    ///< [nat] of an inferred edge along which surfaces touch
-  double faint_price = 6;     ///< [nat] of one that images should have shown
-  double copy_price = 2;      ///< [nat] of one of a loop's copy to a depth that strokes tell
-  double double_price = 4;    ///< [nat] of a stroke that is another one, seen twice
-  double margin = 4;          ///< [nat] by which the second-best choice must be worse
+  /// [nat] more of one that is no plane and no cylinder: of ten faces of parts nine are.
+  double rare_price = 2;
+  double smooth_price = 1;  ///< [nat] of an inferred edge along which surfaces touch
+  double faint_price = 6;   ///< [nat] of one that images should have shown
+  double copy_price = 2;    ///< [nat] of one of a loop's copy to a depth that strokes tell
+  double double_price = 4;  ///< [nat] of a stroke that is another one, seen twice
+  double margin = 4;        ///< [nat] by which the second-best choice must be worse
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
   int nodes = 20000;  ///< of the search tree for the choice

@@ -43,14 +43,6 @@ bool lies_on(const Surface& surface, const Matrix3Xd& polyline, double tolerance
   return true;
 }
 
-std::vector<int> strokes_on(const Surface& surface, const std::vector<Matrix3Xd>& polylines,
-                            double tolerance) {
-  std::vector<int> out;
-  for (int s = 0; s < int(polylines.size()); ++s)
-    if (lies_on(surface, polylines[s], tolerance)) out.push_back(s);
-  return out;
-}
-
 bool on_one_level(const Surface& surface, const std::vector<Matrix3Xd>& polylines,
                   const std::vector<int>& strokes, double tolerance) {
   double low = HUGE_VAL, high = -HUGE_VAL;
@@ -171,6 +163,14 @@ class Finder {
 };
 
 }  // namespace
+
+std::vector<int> strokes_on(const Surface& surface, const std::vector<Matrix3Xd>& polylines,
+                            double tolerance) {
+  std::vector<int> out;
+  for (int s = 0; s < int(polylines.size()); ++s)
+    if (lies_on(surface, polylines[s], tolerance)) out.push_back(s);
+  return out;
+}
 
 std::vector<SurfaceStrokes> find_surfaces(const Sketch& sketch,
                                           const std::vector<Matrix3Xd>& polylines,

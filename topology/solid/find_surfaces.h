@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "sketches/graph/sketch.h"
@@ -13,7 +14,15 @@ namespace sketchsplat {
 struct SurfaceStrokes {
   Surface surface;
   std::vector<int> strokes;  ///< ascending
+  bool around_tube = false;  ///< strokes run around the tube of this torus, not around its axis
+  /// Does a place belong to the part that something speaks for? Empty: all of it.
+  std::function<bool(const Eigen::Vector3d&)> part = {};
+  double bonus = 0;  ///< [nat] by which it is likelier than others of its kind
 };
+
+/// Strokes that lie on a surface, ascending.
+std::vector<int> strokes_on(const Surface& surface, const std::vector<Eigen::Matrix3Xd>& polylines,
+                            double tolerance);
 
 /// Surfaces that strokes ask for: planes of strokes that meet; cylinders and cones through an arc
 /// or circle, about its axis, and cylinders cut in an ellipse, that hold more than the strokes of

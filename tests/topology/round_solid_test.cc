@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Solids with spheres and tori, of which the free numbers are read from contours.
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "gmock/gmock.h"
+#include "tests/topology/solids.h"
+#include "topology/brep/solid_step.h"
+#include "topology/faces/find_planes.h"
+#include "topology/solid/find_solid.h"
+#include "topology/solid/round_families.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+// Lines that touch a surface of the unit kind at places for which `holds`, from all around.
+std::vector<ContourLine> touching(const Surface& surface,
+                                  const std::function<bool(const Vector3d&)>& holds, int count) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI);
+  const Layout layout(surface);
+  std::vector<ContourLine> out;
+  while (int(out.size()) < count) {
+    const Eigen::Vector2d flat = layout.periods() / 2 / M_PI;
+    const Vector3d p = layout.point({flat.x() * angle(random), surface.radius * angle(random) / 2});
+    if (!holds(p)) continue;
+    const Vector3d normal = surface_normal(surface, p),
+                   along = normal.cross(Vector3d(angle(random), angle(random), angle(random)));
+    out.push_back({p - 9 * along.normalized(), along.normalized()});
+  }
+  return out;
+}
+
+const auto everywhere = [](const Vector3d&) { return true; };
+const auto above = [](const Vector3d& p) { return p.z() > 0; };
+
+// The circles that bound the pipe of elbow() if it has straight ends of length 1 and is hollow.
+Sketch pipe_edges() {
+  SolidMaker m;
+  for (const double radius : {0.5, 0.3}) {
+    m.circle({2, -1, 0}, Vector3d::UnitY(), radius);
+    m.circle({-1, 2, 0}, Vector3d::UnitX(), radius);
+  }
+  return m.solid.edges;
+}
+
+// Rays through the middles of a grid about the origin, along z: through an object or beside it.
+void add_rays(const std::function<bool(double, double)>& object, double reach,
+              SolidEvidence* evidence) {
+  constexpr int kSide = 40;
+  for (int i = 0; i < kSide; ++i)
+    for (int k = 0; k < kSide; ++k) {
+      const double x = reach * (2 * i + 1 - kSide) / kSide, y = reach * (2 * k + 1 - kSide) / kSide;
+      evidence->rays.push_back({{x, y, 9}, {x, y, -9}, object(x, y)});
+    }
+}
+
+TEST(Contours, TellTheHeightOfACap) {
+  const Surface sphere{SurfaceKind::kSphere, {0, 0, 0.75}, Vector3d::UnitZ(), 1.25};
+  const RoundFamily family = caps({Vector3d::Zero(), Vector3d::UnitZ(), 1});
+  const Contours contours(touching(sphere, above, 100), 1e-3);
+  const std::optional<Contours::Fit> fit = contours.fit(family, -1.3, 1.3, 48, 20);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(std::tan(fit->parameter), 0.75, 1e-4);
+  EXPECT_EQ(fit->lines.size(), 100u);
+}
+
+TEST(Contours, OfChanceTellNothing) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> place(0, 1);
+  std::vector<ContourLine> lines;
+  for (int i = 0; i < 100; ++i)
+    lines.push_back({{place(random), place(random), 9},
+                     Vector3d(0.1 * place(random), 0.1 * place(random), -1).normalized()});
+  const RoundFamily family = caps({Vector3d::Zero(), Vector3d::UnitZ(), 1});
+  EXPECT_FALSE(Contours(lines, 1e-3).fit(family, -1.3, 1.3, 48, 20));
+}
+
+TEST(Contours, TellHowAGrooveBends) {
+  const Surface torus{SurfaceKind::kTorus, Vector3d::Zero(), Vector3d::UnitZ(), 1, 0, 0.2};
+  const auto inside = [](const Vector3d& p) { return p.head<2>().norm() < 1; };
+  const RoundFamily family =
+      rings({{0, 0, -0.2}, Vector3d::UnitZ(), 1}, {{0, 0, 0.2}, Vector3d::UnitZ(), 1});
+  const Contours contours(touching(torus, inside, 100), 1e-3);
+  const std::optional<Contours::Fit> fit = contours.fit(family, -0.1, -2.5, 48, 20);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->parameter, -M_PI / 2, 2e-2);
+}
+
+TEST(FindSolid, ContoursTellABallFromItsOneEdge) {
+  SolidEvidence evidence;
+  Solid cap = ball_cap(-0.5);
+  cap.edges.evidence[0].confidence = 0.99999;
+  evidence.contours = touching(
+      cap.surfaces[0], [](const Vector3d& p) { return p.z() > -0.5; }, 90);
+  const SolidSearch search = find_solid(cap.edges, {}, evidence);
+  ASSERT_TRUE(search.solid) << search.why;
+  const SolidCheck check = write_solid_step(*search.solid, "");
+  EXPECT_TRUE(check.valid) << check.why;
+  EXPECT_NEAR(check.volume, M_PI * 1.5 * 1.5 * (3 - 1.5) / 3, 1e-3);
+}
+
+TEST(FindSolid, ABentPipeHasTheRadiusOfItsContours) {
+  SolidEvidence evidence;
+  const Surface bend{SurfaceKind::kTorus, Vector3d::Zero(), Vector3d::UnitZ(), 2, 0, 0.5};
+  evidence.contours = touching(
+      bend, [](const Vector3d& p) { return p.x() > 0 && p.y() > 0; }, 200);
+  add_rays(
+      [](double x, double y) {
+        if (x < 0 || y < 0) return std::min(x, y) > -1 && std::abs(std::max(x, y) - 2) < 0.5;
+        return std::abs(std::hypot(x, y) - 2) < 0.5;
+      },
+      3, &evidence);
+  const SolidSearch search = find_solid(pipe_edges(), {}, evidence);
+  ASSERT_TRUE(search.solid) << search.why;
+  const SolidCheck check = write_solid_step(*search.solid, "");
+  EXPECT_TRUE(check.valid) << check.why;
+  EXPECT_EQ(search.solid->faces.size(), 8u);
+  EXPECT_NEAR(check.volume, M_PI * (0.25 - 0.09) * (M_PI + 2), 1e-3);
+}
+
+TEST(FindSolid, TwoCirclesOfABallAreEnough) {
+  SolidMaker m;
+  m.circle({0, 0, -0.6}, Vector3d::UnitZ(), 0.8);
+  m.circle({0, 0, 0.8}, Vector3d::UnitZ(), 0.6);
+  SolidEvidence evidence;
+  add_rays([](double x, double y) { return std::hypot(x, y) < 1; }, 1.2, &evidence);
+  const SolidSearch search = find_solid(m.solid.edges, {}, evidence);
+  ASSERT_TRUE(search.solid) << search.why;
+  const auto cap = [](double h) { return M_PI * h * h * (3 - h) / 3; };
+  EXPECT_NEAR(write_solid_step(*search.solid, "").volume, 4 * M_PI / 3 - cap(0.4) - cap(0.2), 1e-6);
+}
+
+TEST(Cells, ATorusBetweenTwoRimsHasTwo) {
+  for (const bool around_tube : {false, true}) {
+    const Surface torus{SurfaceKind::kTorus, Vector3d::Zero(), Vector3d::UnitZ(), 2, 0, 0.5};
+    const Sketch sketch = around_tube ? elbow().edges : rounded_disk().edges;
+    const std::vector<Cell> cells =
+        cells_of(sketch, polylines_of(sketch), {torus, {0, 1}, around_tube}, 0);
+    ASSERT_EQ(cells.size(), 2u);
+    const Layout layout(torus, around_tube);
+    // Three quarters of the ring or of the tube in the one, a quarter in the other.
+    int in[2] = {0, 0};
+    for (int i = 0; i < 400; ++i) {
+      const Eigen::Vector2d flat =
+          layout.periods().cwiseProduct(Eigen::Vector2d((i % 20 + 0.5) / 20, (i / 20 + 0.5) / 20));
+      for (int k = 0; k < 2; ++k) in[k] += holds(cells[k], layout, flat);
+    }
+    EXPECT_EQ(std::max(in[0], in[1]), 300);
+    EXPECT_EQ(std::min(in[0], in[1]), 100);
+  }
+}
+
+}  // namespace
+}  // namespace sketchsplat
