@@ -16,6 +16,7 @@
 #include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
 #include "topology/solid/infer_edges.h"
+#include "topology/solid/match_rims.h"
 #include "topology/solid/round_candidates.h"
 
 namespace sketchsplat {
@@ -29,6 +30,7 @@ constexpr int kPieces = 128;
 // A sketch with the lines that surfaces imply, and which surfaces they lie on.
 struct Completed {
   Sketch sketch;
+  std::vector<std::vector<int>> now;  // of the strokes that were given, those in their place
   std::vector<Matrix3Xd> polylines;
   std::vector<SurfaceStrokes> surfaces;
   std::vector<bool> inferred, smooth;  // per stroke
@@ -52,16 +54,19 @@ void keep_to_rounds(int begin, int end, std::vector<SurfaceStrokes>* surfaces) {
 }
 
 // Lines make planes known, and these further lines: a slot's straight sides hang on its rulings.
-Completed complete(const Sketch& sketch, const std::vector<ContourLine>& contours,
+Completed complete(const Sketch& given, const std::vector<ContourLine>& contours,
                    double tolerance) {
   constexpr int kRounds = 3;
-  Completed out{sketch, polylines_of(sketch, kPieces), {}, {}, {}};
+  MatchedRims rims = match_rims(given, tolerance);
+  const Sketch& sketch = rims.sketch;
+  Completed out{sketch, std::move(rims.now), polylines_of(sketch, kPieces), {}, {}, {}};
   out.inferred.assign(sketch.size(), false);
   out.smooth = out.inferred;
   out.surfaces = find_surfaces(sketch, out.polylines, tolerance);
   RoundCandidates round =
       round_candidates(sketch, out.polylines, out.surfaces, contours, tolerance);
   add_implied(round.rims, &out);
+  add_implied(rims.rulings, &out);
   for (int k = 0;; ++k) {
     out.surfaces = find_surfaces(out.sketch, out.polylines, tolerance);
     const std::vector<ImpliedStroke> implied =
@@ -70,10 +75,11 @@ Completed complete(const Sketch& sketch, const std::vector<ContourLine>& contour
     add_implied(implied, &out);
   }
   keep_to_rounds(sketch.size(), sketch.size() + int(round.rims.size()), &out.surfaces);
-  for (SurfaceStrokes& s : round.surfaces) {
-    s.strokes = strokes_on(s.surface, out.polylines, tolerance);
-    out.surfaces.push_back(std::move(s));
-  }
+  for (std::vector<SurfaceStrokes>* more : {&round.surfaces, &rims.surfaces})
+    for (SurfaceStrokes& s : *more) {
+      s.strokes = strokes_on(s.surface, out.polylines, tolerance);
+      out.surfaces.push_back(std::move(s));
+    }
   return out;
 }
 
@@ -180,7 +186,8 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   out.cells = int(choice.cells.size());
   const ChosenCells best = choose_cells(choice, {}, options.nodes);
   for (int s = 0; s < sketch.size(); ++s)
-    if (!best.stroke[s]) out.doubtful.push_back(s);
+    if (std::any_of(all.now[s].begin(), all.now[s].end(), [&](int k) { return !best.stroke[k]; }))
+      out.doubtful.push_back(s);
   out.rays = int(evidence.rays.size());
   out.contradicted = contradicted(weighed, best.cell);
   Solid solid;
