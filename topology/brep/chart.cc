@@ -2,6 +2,8 @@
 #include "topology/brep/chart.h"
 
 #include <ElSLib.hxx>
+#include <GeomAPI_ProjectPointOnCurve.hxx>
+#include <Geom_SurfaceOfLinearExtrusion.hxx>
 #include <cmath>
 #include <limits>
 
@@ -62,14 +64,34 @@ Chart::Chart(const Handle(Geom_Surface) & surface, double near)
     : surface_(surface), adaptor_(surface), near_(near) {
   poles_.fill(std::numeric_limits<double>::quiet_NaN());
   const GeomAbs_SurfaceType type = adaptor_.GetType();
-  if (type != GeomAbs_Plane) period_[0] = 2 * M_PI;
+  if (surface->IsUPeriodic()) period_[0] = surface->UPeriod();
   if (type == GeomAbs_Torus) period_[1] = 2 * M_PI;
   if (type == GeomAbs_Sphere) poles_ = {-M_PI / 2, M_PI / 2};
   if (type == GeomAbs_Cone)
     poles_[0] = -adaptor_.Cone().RefRadius() / std::sin(adaptor_.Cone().SemiAngle());
 }
 
+Vector2d Chart::on_extrusion(const Vector3d& p) const {
+  const auto surface = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(surface_);
+  const Handle(Geom_Curve) profile = surface->BasisCurve();
+  const gp_Dir along = surface->Direction();
+  const Vector3d axis(along.X(), along.Y(), along.Z());
+  const double low = profile->FirstParameter(), high = profile->LastParameter();
+  const double up = (p - to_eigen(profile->Value(low))).dot(axis);
+  const gp_Pnt foot = to_point(p - up * axis);
+  double u = low, least = foot.Distance(profile->Value(low));
+  const auto offer = [&](double at, double distance) {
+    if (distance < least) u = at, least = distance;
+  };
+  offer(high, foot.Distance(profile->Value(high)));
+  const GeomAPI_ProjectPointOnCurve projection(foot, profile, low, high);
+  if (projection.NbPoints() > 0)
+    offer(projection.LowerDistanceParameter(), projection.LowerDistance());
+  return {u, (p - to_eigen(profile->Value(u))).dot(axis)};
+}
+
 Vector2d Chart::parameters(const Vector3d& p) const {
+  if (extruded()) return on_extrusion(p);
   double u = 0, v = 0;
   switch (adaptor_.GetType()) {
     case GeomAbs_Plane:

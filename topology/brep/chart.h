@@ -12,7 +12,8 @@
 
 namespace sketchsplat::brep {
 
-/// Parameters (u, v) of a plane, cylinder, cone, sphere or torus.
+/// Parameters (u, v) of a plane, cylinder, cone, sphere or torus, or of an extrusion across its
+/// profile.
 class Chart {
  public:
   /// `near`: from where on a point lies in a pole.
@@ -27,8 +28,11 @@ class Chart {
   double pole(int which) const { return poles_[which]; }
   int pole_at(const Eigen::Vector3d& p) const;  ///< 0 below, 1 above, -1 none
   bool flat() const { return adaptor_.GetType() == GeomAbs_Plane; }
+  bool extruded() const { return adaptor_.GetType() == GeomAbs_SurfaceOfExtrusion; }
 
  private:
+  Eigen::Vector2d on_extrusion(const Eigen::Vector3d& p) const;
+
   Handle(Geom_Surface) surface_;
   GeomAdaptor_Surface adaptor_;
   Eigen::Vector2d period_ = Eigen::Vector2d::Zero();

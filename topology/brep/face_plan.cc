@@ -51,6 +51,7 @@ class SeamFinder {
   // First coordinates to try: of vertices first, then all around.
   std::vector<double> candidates() const {
     std::vector<double> out;
+    if (plan_.chart.extruded()) return {0};  // where the profile begins
     for (size_t i = 0; i < loops_.size(); ++i) {
       if (loops_[i].winding == 0) continue;
       for (const LoopStroke& s : plan_.loops[i])
@@ -185,7 +186,7 @@ void check_poles(int below, int above, bool all_around, const FacePlan& plan) {
 // of the face: algorithms of OpenCASCADE are best there.
 void turn_frame(const std::vector<TracedLoop>& loops, FacePlan* plan, double near) {
   double turn = plan->at;
-  if (plan->chart.flat()) return;
+  if (plan->chart.flat() || plan->chart.extruded()) return;
   if (!plan->seam || plan->winds_in_v) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const TracedLoop& loop : loops) {

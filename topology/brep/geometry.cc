@@ -13,6 +13,7 @@
 #include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
 #include <Geom_SphericalSurface.hxx>
+#include <Geom_SurfaceOfLinearExtrusion.hxx>
 #include <Geom_ToroidalSurface.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <algorithm>
@@ -120,6 +121,22 @@ Handle(Geom_Surface) cone(const Surface& s, const std::vector<Vector3d>& border)
   return new Geom_ConicalSurface(frame, std::atan(std::abs(slope)), std::abs(radius));
 }
 
+// The profile as if it were the one stroke of a sketch.
+Sketch sketch_of(const Surface& s) {
+  Sketch sketch;
+  std::vector<Vector3d> handles = s.profile;
+  if (int(handles.size()) != num_controls(s.profile_kind)) throw Refused("it has no profile");
+  int begin = -1, end = -1;
+  if (!is_closed(s.profile_kind)) {
+    begin = sketch.add_node(handles.front());
+    end = sketch.add_node(handles.back());
+    handles.erase(handles.begin());
+    handles.pop_back();
+  }
+  sketch.add_stroke(s.profile_kind, begin, end, handles);
+  return sketch;
+}
+
 }  // namespace
 
 EdgeCurve curve_of(const Sketch& sketch, int stroke, double flat) {
@@ -146,7 +163,8 @@ EdgeCurve curve_of(const Sketch& sketch, int stroke, double flat) {
 }
 
 Handle(Geom_Surface) surface_of(const Surface& s, const std::vector<Vector3d>& border) {
-  const bool round = s.kind != SurfaceKind::kPlane && s.kind != SurfaceKind::kCone;
+  const bool round = s.kind != SurfaceKind::kPlane && s.kind != SurfaceKind::kCone &&
+                     s.kind != SurfaceKind::kExtrusion;
   const auto is_length = [](double x) { return std::isfinite(x) && x > 1e-9; };
   if (!s.origin.allFinite() || !(std::abs(s.axis.norm() - 1) < 1e-6))
     throw Refused("a surface has no axis");
@@ -167,6 +185,9 @@ Handle(Geom_Surface) surface_of(const Surface& s, const std::vector<Vector3d>& b
       if (!is_length(s.minor_radius) || !(s.minor_radius < s.radius))
         throw Refused("a torus runs through itself");
       return new Geom_ToroidalSurface(frame, s.radius, s.minor_radius);
+    case SurfaceKind::kExtrusion:
+      return new Geom_SurfaceOfLinearExtrusion(curve_of(sketch_of(s), 0, 0).curve,
+                                               frame.Direction());
   }
   throw Refused("a surface is of no kind");
 }

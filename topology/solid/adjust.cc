@@ -78,6 +78,22 @@ struct OnSurface {
   }
 };
 
+// A control point of one rim of an extrusion lies over that of the other; ends of axes of ellipses
+// (vectors) are the same.
+struct Over {
+  bool vector;
+  template <typename T>
+  bool operator()(T const* const* blocks, T* residuals) const {
+    const T* u = blocks[0];
+    const Vec3<T> axis = Vec3<T>(u[3], u[4], u[5]).normalized();
+    const Vec3<T> off(blocks[2][0] - blocks[1][0], blocks[2][1] - blocks[1][1],
+                      blocks[2][2] - blocks[1][2]);
+    const Vec3<T> across = vector ? off : off.cross(axis);
+    for (int i = 0; i < 3; ++i) residuals[i] = T(kHard) * across[i];
+    return true;
+  }
+};
+
 // An unknown stays where it is.
 struct Stay {
   std::vector<double> value;
@@ -130,7 +146,10 @@ class Adjustment {
   }
 
   void run() {
-    for (const auto& [stroke, surface] : bounds_) tie(stroke, surface);
+    for (const auto& [stroke, surface] : bounds_)
+      if (!is_extrusion(surface)) tie(stroke, surface);
+    for (int i = 0; i < int(solid_->surfaces.size()); ++i)
+      if (is_extrusion(i)) tie_rims(i);
     for (Unknowns& u : unknowns_) stay(u.data(), 9, 1e-2);
     for (int i = 0; i < solid_->edges.nodes.cols(); ++i)
       stay(solid_->edges.nodes.col(i).data(), 3, 1);
@@ -145,6 +164,8 @@ class Adjustment {
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem_, &summary);
     for (size_t i = 0; i < unknowns_.size(); ++i) copy_back(unknowns_[i], &solid_->surfaces[i]);
+    for (int i = 0; i < int(solid_->surfaces.size()); ++i)
+      if (is_extrusion(i) && !rims_of(i).empty()) set_profile(rims_of(i)[0], i);
   }
 
   double gap() const {
@@ -159,6 +180,43 @@ class Adjustment {
   }
 
  private:
+  bool is_extrusion(int surface) const {
+    return solid_->surfaces[surface].kind == SurfaceKind::kExtrusion;
+  }
+
+  // Strokes of a profile's kind that bound the faces on an extrusion.
+  std::vector<int> rims_of(int surface) const {
+    std::vector<int> out;
+    for (const auto& [stroke, on] : bounds_)
+      if (on == surface &&
+          solid_->edges.strokes[stroke].kind == solid_->surfaces[surface].profile_kind)
+        out.push_back(stroke);
+    return out;
+  }
+
+  void tie_rims(int surface) {
+    const std::vector<int> rims = rims_of(surface);
+    for (size_t i = 1; i < rims.size(); ++i) {
+      const bool closed = is_closed(solid_->edges.strokes[rims[0]].kind);
+      const std::vector<double*> first = controls_of(&solid_->edges, rims[0]),
+                                 other = controls_of(&solid_->edges, rims[i]);
+      for (size_t k = 0; k < first.size(); ++k) {
+        auto* cost = new ceres::DynamicAutoDiffCostFunction<Over, 9>(new Over{closed && k > 0});
+        cost->AddParameterBlock(9);
+        cost->AddParameterBlock(3);
+        cost->AddParameterBlock(3);
+        cost->SetNumResiduals(3);
+        problem_.AddResidualBlock(
+            cost, nullptr, std::vector<double*>{unknowns_[surface].data(), first[k], other[k]});
+      }
+    }
+  }
+
+  void set_profile(int stroke, int surface) {
+    const ControlPoints c = control_points(solid_->edges, stroke);
+    solid_->surfaces[surface].profile.assign(c.p.begin(), c.p.begin() + c.count);
+  }
+
   void tie(int stroke, int surface) {
     const StrokeKind kind = solid_->edges.strokes[stroke].kind;
     const int places = kind == StrokeKind::kLine ? 3 : 9;

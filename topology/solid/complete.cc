@@ -9,6 +9,8 @@
 #include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
 #include "topology/faces/find_planes.h"
+#include "topology/solid/match_rims.h"
+#include "topology/solid/round_candidates.h"
 
 namespace sketchsplat {
 namespace {
@@ -93,8 +95,8 @@ void imply(double tolerance, double slide, Completed* all) {
     if (implied.empty() || round == kRounds) break;
     for (const ImpliedStroke& s : implied) all->add(s);
   }
-  keep_to_rounds(all->seen.size(), all->seen.size() + int(all->round.rims.size()), &all->surfaces);
-  for (SurfaceStrokes s : all->round.surfaces) {
+  keep_to_rounds(all->seen.size(), all->seen.size() + all->rims, &all->surfaces);
+  for (SurfaceStrokes s : all->more) {
     s.strokes = strokes_on(s.surface, all->polylines, tolerance);
     all->surfaces.push_back(std::move(s));
   }
@@ -103,14 +105,22 @@ void imply(double tolerance, double slide, Completed* all) {
 Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours, double tolerance,
                    double slide) {
   Completed out;
-  out.seen = seen;
-  cut_overlaps(tolerance, &out.seen);
+  Sketch cut = seen;
+  cut_overlaps(tolerance, &cut);
+  MatchedRims matched = match_rims(cut, tolerance);
+  out.seen = std::move(matched.sketch);
+  out.now = std::move(matched.now);
   out.sketch = out.seen;
-  out.origin.assign(seen.size(), EdgeOrigin::kSeen);
+  out.origin.assign(out.seen.size(), EdgeOrigin::kSeen);
   out.polylines = polylines_of(out.sketch, kPieces);
   out.surfaces = find_surfaces(out.sketch, out.polylines, tolerance);
-  out.round = round_candidates(out.sketch, out.polylines, out.surfaces, contours, tolerance);
-  for (const ImpliedStroke& s : out.round.rims) out.add(s);
+  RoundCandidates round =
+      round_candidates(out.sketch, out.polylines, out.surfaces, contours, tolerance);
+  out.rims = int(round.rims.size());
+  for (const auto* implied : {&round.rims, &matched.rulings})
+    for (const ImpliedStroke& s : *implied) out.add(s);
+  for (std::vector<SurfaceStrokes>* more : {&round.surfaces, &matched.surfaces})
+    for (SurfaceStrokes& s : *more) out.more.push_back(std::move(s));
   imply(tolerance, slide, &out);
   return out;
 }

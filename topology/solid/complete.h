@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "sketches/graph/sketch.h"
+#include "topology/solid/contours.h"
 #include "topology/solid/find_surfaces.h"
 #include "topology/solid/infer_edges.h"
-#include "topology/solid/round_candidates.h"
 
 namespace sketchsplat {
 
@@ -21,12 +21,15 @@ enum class EdgeOrigin {
 
 /// A sketch with the edges that its surfaces imply.
 struct Completed {
-  Sketch seen;    ///< as given, but for strokes that run past one another: these are cut
+  /// As given, but strokes that run past one another are cut, and rims of extrusions are copies.
+  Sketch seen;
   Sketch sketch;  ///< nodes and strokes that are seen, then the others
   std::vector<Eigen::Matrix3Xd> polylines;
   std::vector<SurfaceStrokes> surfaces;
-  std::vector<EdgeOrigin> origin;  ///< per stroke
-  RoundCandidates round;           ///< that the strokes which are seen ask for
+  std::vector<EdgeOrigin> origin;     ///< per stroke
+  std::vector<std::vector<int>> now;  ///< of the strokes that were given, those in their place
+  std::vector<SurfaceStrokes> more;   ///< spheres, tori and extrusions that the seen ones ask for
+  int rims = 0;                       ///< how many of the first others are rims of such
 
   void add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
            const std::vector<Eigen::Vector3d>& handles);

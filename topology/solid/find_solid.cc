@@ -160,18 +160,17 @@ class Search {
         evidence_(evidence),
         all_(complete(sketch, evidence.contours, tolerance, slide)) {}
 
-  SolidSearch plain() { return run(std::vector<bool>(sketch_.size())); }
+  SolidSearch plain() { return run(std::vector<bool>(all_.seen.size())); }
 
   // `plain` was tried, and left strokes over.
-  SolidSearch with_copies(const SolidSearch& before) {
-    std::vector<bool> left(sketch_.size());
-    for (const int s : before.doubtful) left[s] = true;
-    copy_loops(left, tolerance_, slide_, &all_);
-    return run(left);
+  SolidSearch with_copies() {
+    copy_loops(left_, tolerance_, slide_, &all_);
+    return run(left_);
   }
 
  private:
-  SolidSearch run(const std::vector<bool>& left) const {
+  // `left` by an earlier choice: strokes that may be others seen twice.
+  SolidSearch run(const std::vector<bool>& left) {
     SolidSearch out;
     EvidenceOfCells weighed;
     CellChoice choice = price(all_, tolerance_, options_, evidence_, &weighed);
@@ -179,9 +178,7 @@ class Search {
     out.surfaces = int(all_.surfaces.size());
     out.cells = int(choice.cells.size());
     const ChosenCells best = choose_cells(choice, {}, options_.nodes);
-    for (int s = 0; s < sketch_.size(); ++s)
-      if (!best.stroke[s] && !best.twice[s]) out.doubtful.push_back(s);
-    out.twice = int(std::count(best.twice.begin(), best.twice.end(), true));
+    note_left(best, &out);
     out.rays = int(evidence_.rays.size());
     out.contradicted = contradicted(weighed, best.cell);
     std::vector<bool> inferred;
@@ -194,6 +191,15 @@ class Search {
     out.why = objection(out);
     if (out.why.empty()) out.solid = std::move(solid);
     return out;
+  }
+
+  void note_left(const ChosenCells& best, SolidSearch* out) {
+    left_.assign(all_.seen.size(), false);
+    for (int s = 0; s < all_.seen.size(); ++s) left_[s] = !best.stroke[s] && !best.twice[s];
+    for (int s = 0; s < sketch_.size(); ++s)
+      if (std::any_of(all_.now[s].begin(), all_.now[s].end(), [&](int k) { return left_[k]; }))
+        out->doubtful.push_back(s);
+    out->twice = int(std::count(best.twice.begin(), best.twice.end(), true));
   }
 
   // Why a choice is not good enough; empty if it is.
@@ -214,6 +220,7 @@ class Search {
   const SolidOptions& options_;
   const SolidEvidence& evidence_;
   Completed all_;
+  std::vector<bool> left_;  // per stroke that is seen: it bounds no face of the last choice
 };
 
 }  // namespace
@@ -233,7 +240,7 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   for (int i = 0; i < 2 && !found[tried - 1].solid; ++i) {
     Search* search = i == 0 ? &coarse : &fine;
     if (found[i].doubtful.empty()) continue;
-    found[tried++] = search->with_copies(found[i]);
+    found[tried++] = search->with_copies();
   }
   SolidSearch& last = found[tried - 1].solid ? found[tried - 1] : found[0];
   if (last.solid) adjust(&*last.solid);
