@@ -8,6 +8,7 @@
 #include "tests/topology/solids.h"
 #include "topology/brep/solid_step.h"
 #include "topology/faces/find_planes.h"
+#include "topology/solid/cell_index.h"
 #include "topology/solid/find_solid.h"
 #include "topology/solid/surface.h"
 
@@ -202,6 +203,28 @@ TEST(Evidence, AFaceThatPlacesAreSeenThroughHasAPrice) {
     EXPECT_EQ(std::count_if(weighed.against.begin(), weighed.against.end(),
                             [](double nats) { return nats > 5; }),
               seen ? 1 : 0);
+  }
+}
+
+TEST(CellIndex, SaysWhatTheSlowReferenceSays) {
+  std::mt19937 random(4);
+  for (const Solid& solid : {plate_with_hole(0.5), half_cylinder(), cone_solid(0.5)}) {
+    const std::vector<Eigen::Matrix3Xd> polylines = polylines_of(solid.edges);
+    const std::vector<SurfaceStrokes> surfaces = find_surfaces(solid.edges, polylines, 1e-3);
+    int inside = 0;
+    for (size_t i = 0; i < surfaces.size(); ++i)
+      for (const Cell& cell : cells_of(solid.edges, polylines, surfaces[i], int(i))) {
+        const Layout layout = layout_of(surfaces[i]);
+        const CellIndex index(cell, layout);
+        const FlatBox box = box_of(cell);
+        std::uniform_real_distribution<double> place(-0.3, 1.3);
+        for (int k = 0; k < 500; ++k) {
+          const Eigen::Vector2d p = box.at(place(random), place(random));
+          EXPECT_EQ(index.holds(p), holds(cell, layout, p));
+          inside += index.holds(p);
+        }
+      }
+    EXPECT_GT(inside, 300);
   }
 }
 

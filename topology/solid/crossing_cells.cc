@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "topology/solid/cell_index.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -15,19 +17,18 @@ struct Segment {
   Vector3d from, to;
 };
 
-// Is a point in a cell, and off its border?
-bool holds_well(const Cell& cell, const Layout& layout, const Vector3d& point, double margin) {
-  const Eigen::Vector2d flat = layout.flat(point);
-  for (const auto& [u, v] : {std::pair(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-    if (!holds(cell, layout, flat + margin * Eigen::Vector2d(u, v))) return false;
-  return true;
-}
-
 struct Placed {
-  const Cell& cell;
-  const Surface& surface;
+  const CellIndex& cell;
   const Layout& layout;
 };
+
+// Is a point in a cell, and off its border?
+bool holds_well(const Placed& placed, const Vector3d& point, double margin) {
+  const Eigen::Vector2d flat = placed.layout.flat(point);
+  for (const auto& [u, v] : {std::pair(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+    if (!placed.cell.holds(flat + margin * Eigen::Vector2d(u, v))) return false;
+  return true;
+}
 
 // Does a segment of one cell run through the other?
 bool runs_through(const std::vector<Segment>& segments, const Placed& own, const Placed& other,
@@ -36,9 +37,7 @@ bool runs_through(const std::vector<Segment>& segments, const Placed& own, const
     const Crossings at = crossings(other.layout, s.from, s.to);
     for (int k = 0; k < at.count; ++k) {
       const Vector3d p = s.from + at.t[k] * (s.to - s.from);
-      if (holds_well(other.cell, other.layout, p, 2 * tolerance) &&
-          holds_well(own.cell, own.layout, p, 2 * tolerance))
-        return true;
+      if (holds_well(other, p, 2 * tolerance) && holds_well(own, p, 2 * tolerance)) return true;
     }
   }
   return false;
@@ -50,16 +49,15 @@ std::vector<std::pair<int, int>> crossing_cells(const std::vector<SurfaceStrokes
                                                 const std::vector<Cell>& cells, double tolerance) {
   std::vector<Layout> layouts;
   for (const SurfaceStrokes& s : surfaces) layouts.push_back(layout_of(s));
+  std::vector<CellIndex> index;
   std::vector<std::vector<Segment>> segments;
   for (const Cell& cell : cells) {
+    index.emplace_back(cell, layouts[cell.surface]);
     segments.emplace_back();
     for (const auto& [from, to] : grid_within(cell, layouts[cell.surface], kLines))
       segments.back().push_back({from, to});
   }
-  const auto placed = [&](int c) {
-    const int s = cells[c].surface;
-    return Placed{cells[c], surfaces[s].surface, layouts[s]};
-  };
+  const auto placed = [&](int c) { return Placed{index[c], layouts[cells[c].surface]}; };
   const auto through = [&](int a, int b) {
     return runs_through(segments[a], placed(a), placed(b), tolerance);
   };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "topology/solid/cell_index.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -13,11 +15,12 @@ using Eigen::Vector3d;
 class Scales {
  public:
   Scales(const std::vector<SurfaceStrokes>& surfaces, const std::vector<Cell>& cells)
-      : surfaces_(surfaces), cells_(cells), of_surface_(surfaces.size()) {
+      : surfaces_(surfaces), of_surface_(surfaces.size()) {
     for (const SurfaceStrokes& s : surfaces) layouts_.push_back(layout_of(s));
     for (int c = 0; c < int(cells.size()); ++c) {
       of_surface_[cells[c].surface].push_back(c);
       boxes_.push_back(box_of(cells[c]));
+      index_.emplace_back(cells[c], layouts_[cells[c].surface]);
     }
   }
 
@@ -30,7 +33,7 @@ class Scales {
       for (int k = 0; k < at.count && at.t[k] < end; ++k) {
         const Eigen::Vector2d flat = layouts_[i].flat(Vector3d(from + at.t[k] * (to - from)));
         for (const int c : of_surface_[i])
-          if (boxes_[c].holds(flat, layouts_[i].periods()) && holds(cells_[c], layouts_[i], flat))
+          if (boxes_[c].holds(flat, layouts_[i].periods()) && index_[c].holds(flat))
             out.push_back(c);
       }
     }
@@ -41,10 +44,10 @@ class Scales {
 
  private:
   const std::vector<SurfaceStrokes>& surfaces_;
-  const std::vector<Cell>& cells_;
   std::vector<Layout> layouts_;
   std::vector<std::vector<int>> of_surface_;
   std::vector<FlatBox> boxes_;
+  std::vector<CellIndex> index_;
 };
 
 // Places behind a cell.

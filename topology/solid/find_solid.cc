@@ -229,20 +229,16 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
                        const SolidEvidence& evidence) {
   const double tolerance = options.tolerance * largest_extent(sketch);
   // Thin walls ask for a fine tolerance, curves that err for a coarse one.
-  Search coarse(sketch, tolerance, 3 * tolerance, options, evidence),
-      fine(sketch, tolerance / 3, 3 * tolerance, options, evidence);
-  SolidSearch found[4];
-  int tried = 0;
-  for (Search* search : {&coarse, &fine}) {
-    found[tried] = search->plain();
-    if (found[tried++].solid) break;
+  std::vector<Search> searches;
+  std::vector<SolidSearch> found;
+  for (const double share : {1.0, 1.0 / 3}) {
+    searches.emplace_back(sketch, share * tolerance, 3 * tolerance, options, evidence);
+    found.push_back(searches.back().plain());
+    if (found.back().solid) break;
   }
-  for (int i = 0; i < 2 && !found[tried - 1].solid; ++i) {
-    Search* search = i == 0 ? &coarse : &fine;
-    if (found[i].doubtful.empty()) continue;
-    found[tried++] = search->with_copies();
-  }
-  SolidSearch& last = found[tried - 1].solid ? found[tried - 1] : found[0];
+  for (size_t i = 0; i < searches.size() && !found.back().solid; ++i)
+    if (!found[i].doubtful.empty()) found.push_back(searches[i].with_copies());
+  SolidSearch& last = found.back().solid ? found.back() : found.front();
   if (last.solid) adjust(&*last.solid);
   return std::move(last);
 }
