@@ -13,6 +13,7 @@
 #include "topology/solid/adjust.h"
 #include "topology/solid/assemble.h"
 #include "topology/solid/choose.h"
+#include "topology/solid/common_faces.h"
 #include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
 #include "topology/solid/infer_edges.h"
@@ -99,6 +100,19 @@ CellChoice price(const Completed& all, double tolerance, const SolidOptions& opt
   return choice;
 }
 
+// What speaks against the best choice; empty if nothing does.
+std::string doubt(const SolidSearch& found, int strokes, const SolidOptions& options) {
+  if (!found.doubtful.empty())
+    return std::to_string(found.doubtful.size()) + " of " + std::to_string(strokes) +
+           " curves are no edge of the faces that close";
+  if (found.contradicted > options.contradicted * found.rays)
+    return "masks show otherwise along " + std::to_string(found.contradicted) + " of " +
+           std::to_string(found.rays) + " lines of sight";
+  if (found.margin < options.margin)
+    return "another choice of faces explains the curves about as well";
+  return "";
+}
+
 }  // namespace
 
 SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
@@ -115,23 +129,23 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
     if (!best.stroke[s]) out.doubtful.push_back(s);
   out.rays = int(evidence.rays.size());
   out.contradicted = contradicted(weighed, best.cell);
+  const auto boundary = [&](const ChosenCells& chosen, Solid* solid, std::string* why) {
+    return assemble(all.sketch, all.inferred, all.polylines, all.surfaces, choice.cells, chosen,
+                    solid, why);
+  };
   Solid solid;
-  if (!assemble(all.sketch, all.inferred, all.polylines, all.surfaces, choice.cells, best, &solid,
-                &out.why))
-    return out;
-  out.margin = choose_cells(choice, {best}, options.nodes).price - best.price;
-  if (!out.doubtful.empty()) {
-    out.why = std::to_string(out.doubtful.size()) + " of " + std::to_string(sketch.size()) +
-              " curves are no edge of the faces that close";
-    return out;
-  }
-  if (out.contradicted > options.contradicted * out.rays) {
-    out.why = "masks show otherwise along " + std::to_string(out.contradicted) + " of " +
-              std::to_string(out.rays) + " lines of sight";
-    return out;
-  }
-  if (out.margin < options.margin) {
-    out.why = "another choice of faces explains the curves about as well";
+  if (!boundary(best, &solid, &out.why)) return out;
+  out.faces = int(solid.faces.size());
+  const ChosenCells second = choose_cells(choice, {best}, options.nodes);
+  out.margin = second.price - best.price;
+  out.why = doubt(out, sketch.size(), options);
+  if (!out.why.empty()) {
+    std::string none;
+    Solid other;
+    if (out.contradicted <= options.contradicted * out.rays && boundary(second, &other, &none))
+      out.shell = common_faces(solid, other);
+    if (out.shell && out.shell->faces.empty()) out.shell.reset();
+    if (out.shell) adjust(&*out.shell);
     return out;
   }
   adjust(&solid);
