@@ -170,8 +170,22 @@ void bind_curves(py::module_* m) {
         return "<sketchsplat." + std::string(name_of(c.kind)) + " of length " +
                std::to_string(c.length) + ">";
       });
+  py::class_<CurveSolid>(*m, "CurveSolid")
+      .def_readonly("faces", &CurveSolid::faces, "How many lie on each kind of surface")
+      .def_readonly("volume", &CurveSolid::volume)
+      .def_readonly("area", &CurveSolid::area)
+      .def(
+          "write",
+          [](const CurveSolid& s, const std::string& path, double scale, const std::string& unit) {
+            WriteOptions options;
+            options.scale = scale, options.unit = unit;
+            s.write(path, options);
+          },
+          py::arg("path"), py::kw_only(), py::arg("scale") = 1.0, py::arg("unit") = "mm",
+          "Writes its exact boundary as .step");
   py::class_<CurveSketch>(*m, "CurveSketch")
       .def_readonly("curves", &CurveSketch::curves)
+      .def_readonly("solid", &CurveSketch::solid, "That the curves bound; None if they tell none")
       .def_property_readonly(
           "nodes", [](const CurveSketch& s) { return Eigen::MatrixXd(s.nodes.transpose()); },
           "N x 3")
