@@ -134,13 +134,15 @@ SurfaceErrors::SurfaceErrors(const Solid& solid, const SigmaModel& sigma)
   for (const Surface& s : surfaces_) first_.push_back(first_.back() + int(moves_of(s.kind).size()));
   const int n = first_.back();
   MatrixXd normal = MatrixXd::Zero(n, n);
-  MatrixXd push = MatrixXd::Zero(n, kErrorsOfStroke * solid.edges.size());
+  const int common = kErrorsOfStroke * solid.edges.size();  // first error of a whole surface
+  MatrixXd push = MatrixXd::Zero(n, common + int(surfaces_.size()));
   const std::vector<std::set<int>> strokes = strokes_of(solid);
   for (int s = 0; s < int(surfaces_.size()); ++s)
     for (const int stroke : strokes[s]) {
       if (!tells(solid, stroke)) continue;
       const StrokeErrors errors(solid.edges, sigma, stroke);
-      const double weight = stroke_length(solid.edges, stroke) / kPlaces;
+      const double weight = stroke_length(solid.edges, stroke) / kPlaces,
+                   aside = sigma.place(solid.edges.strokes[stroke], solid.edges.evidence[stroke]);
       const int size = first_[s + 1] - first_[s];
       for (int i = 0; i < kPlaces; ++i) {
         const double t = (i + 0.5) / kPlaces;
@@ -151,6 +153,7 @@ SurfaceErrors::SurfaceErrors(const Solid& solid, const SigmaModel& sigma)
         normal.block(first_[s], first_[s], size, size) += weight * a * a.transpose();
         push.block(first_[s], kErrorsOfStroke * stroke, size, kErrorsOfStroke) -=
             weight * a * (g.transpose() * errors.at(t));
+        push.block(first_[s], common + s, size, 1) -= weight * aside * a;
       }
     }
   solve(normal, push);

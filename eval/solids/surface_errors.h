@@ -34,7 +34,9 @@ Surface moved(const Surface& surface, const Eigen::VectorXd& by, double reach);
 ///   x = -Z (Z^T A^T W A Z)^-1 Z^T A^T W d,
 /// A: derivatives of the places' distances by the moves; d: distances by which errors of the curves
 /// push the places off; Z: moves that keep what is held. The errors are those that `inspect` takes
-/// (StrokeErrors): independent from stroke to stroke, counted once where two surfaces share one.
+/// (StrokeErrors): independent from stroke to stroke, counted once where two surfaces share one;
+/// and, because edges in images err to one side of the material, what they err by as a whole
+/// (SigmaModel::place) once more, across the surface, alike for all strokes of one surface.
 class SurfaceErrors {
  public:
   /// Strokes that are inferred, of which nobody knows how well they are known, or which edgels
