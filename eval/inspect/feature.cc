@@ -159,8 +159,8 @@ MeasuredFeature measured_feature(const Nominal& nominal, const Association& asso
         largest = std::max(largest, moves[i].col(k).squaredNorm());
       }
       if (!(largest > 0)) continue;
-      out.errors.push_back(
-          {stroke * kErrorsOfStroke + k, k >= kErrorsOfEdgels, fit_feature(ref.kind, moved, weights, side)});
+      out.errors.push_back({stroke * kErrorsOfStroke + k, k >= kErrorsOfEdgels,
+                            fit_feature(ref.kind, moved, weights, side)});
     }
   }
   return out;

@@ -53,7 +53,7 @@ void write_tables(const std::string& folder, const SolidOutputOptions& options, 
 }
 
 void write_shell(const std::string& folder, const SolidOutputOptions& options, SolidOutcome* out) {
-  out->why_no_shell = "no face is in the second-best choice, too, or masks contradict";
+  out->why_no_shell = "no face is sure, by the second-best choice, curves left over and masks";
   if (!out->search.shell) return;
   StepSolidOptions step = options.step;
   step.open = true;

@@ -47,24 +47,31 @@ Key key_of(const Solid& solid, const SolidFace& face) {
 Solid common_faces(const Solid& one, const Solid& other) {
   std::set<Key> keys;
   for (const SolidFace& face : other.faces) keys.insert(key_of(other, face));
+  std::vector<bool> keep;
+  for (const SolidFace& face : one.faces) keep.push_back(keys.count(key_of(one, face)) > 0);
+  return keep_faces(one, keep);
+}
+
+Solid keep_faces(const Solid& solid, const std::vector<bool>& keep) {
   Solid out;
-  std::vector<bool> keep(one.edges.size());
+  std::vector<bool> bounds(solid.edges.size());
   std::map<int, int> surface_index;
-  for (const SolidFace& face : one.faces) {
-    if (!keys.count(key_of(one, face))) continue;
+  for (size_t f = 0; f < keep.size(); ++f) {
+    if (!keep[f]) continue;
+    const SolidFace& face = solid.faces[f];
     const auto [it, first] = surface_index.emplace(face.surface, int(out.surfaces.size()));
-    if (first) out.surfaces.push_back(one.surfaces[face.surface]);
+    if (first) out.surfaces.push_back(solid.surfaces[face.surface]);
     out.faces.push_back({it->second, face.reversed, face.loops});
     for (const Loop& loop : face.loops)
-      for (const LoopStroke& s : loop) keep[s.stroke] = true;
+      for (const LoopStroke& s : loop) bounds[s.stroke] = true;
   }
-  std::vector<int> index(keep.size(), -1);
-  for (size_t s = 0; s < keep.size(); ++s)
-    if (keep[s]) {
+  std::vector<int> index(bounds.size(), -1);
+  for (size_t s = 0; s < bounds.size(); ++s)
+    if (bounds[s]) {
       index[s] = int(out.inferred.size());
-      out.inferred.push_back(one.inferred[s]);
+      out.inferred.push_back(solid.inferred[s]);
     }
-  out.edges = keep_strokes(one.edges, keep);
+  out.edges = keep_strokes(solid.edges, bounds);
   for (SolidFace& face : out.faces)
     for (Loop& loop : face.loops)
       for (LoopStroke& s : loop) s.stroke = index[s.stroke];

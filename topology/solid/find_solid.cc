@@ -113,6 +113,31 @@ std::string doubt(const SolidSearch& found, int strokes, const SolidOptions& opt
   return "";
 }
 
+// Is there a stroke on the surface that no face explains? What it does there nobody knows.
+bool holds_doubtful(const Completed& all, const std::vector<int>& doubtful, const Surface& s) {
+  for (const SurfaceStrokes& of : all.surfaces) {
+    const Surface& t = of.surface;
+    if (t.kind != s.kind || t.origin != s.origin || t.axis != s.axis || t.radius != s.radius)
+      continue;
+    for (const int stroke : doubtful)
+      if (std::binary_search(of.strokes.begin(), of.strokes.end(), stroke)) return true;
+  }
+  return false;
+}
+
+// Faces of the best choice that the second-best one has, too, and that leave no stroke open.
+std::optional<Solid> sure_faces(const Solid& best, const Solid& second, const Completed& all,
+                                const std::vector<int>& doubtful) {
+  const Solid common = common_faces(best, second);
+  std::vector<bool> explained;
+  for (const SolidFace& face : common.faces)
+    explained.push_back(!holds_doubtful(all, doubtful, common.surfaces[face.surface]));
+  Solid shell = keep_faces(common, explained);
+  if (shell.faces.empty()) return std::nullopt;
+  adjust(&shell);
+  return shell;
+}
+
 }  // namespace
 
 SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
@@ -143,9 +168,7 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
     std::string none;
     Solid other;
     if (out.contradicted <= options.contradicted * out.rays && boundary(second, &other, &none))
-      out.shell = common_faces(solid, other);
-    if (out.shell && out.shell->faces.empty()) out.shell.reset();
-    if (out.shell) adjust(&*out.shell);
+      out.shell = sure_faces(solid, other, all, out.doubtful);
     return out;
   }
   adjust(&solid);
