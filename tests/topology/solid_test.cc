@@ -124,7 +124,7 @@ TEST(CommonFaces, AreThoseOnTheSameSurfaceBetweenTheSameCurves) {
   EXPECT_FALSE(write_solid_step(shell, "").valid) << "it is no solid";
 }
 
-// A frustum without its top: the bottom and the side, or the bottom and a lid on it.
+// No margin is large enough.
 TEST(FindSolid, FacesThatTheSecondBestChoiceHasTooAreAShell) {
   SolidOptions surer;
   surer.margin = 1e9;
