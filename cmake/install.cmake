@@ -11,7 +11,8 @@ install(TARGETS sketchsplat_brep sketchsplat_charts sketchsplat_image_formats sk
 include(CMakePackageConfigHelpers)
 install(TARGETS sketchsplat_library EXPORT sketchsplat_targets
   LIBRARY DESTINATION lib COMPONENT library)
-install(TARGETS sketchsplat_image_formats LIBRARY DESTINATION lib/sketchsplat COMPONENT library)
+install(TARGETS sketchsplat_brep sketchsplat_image_formats
+  LIBRARY DESTINATION lib/sketchsplat COMPONENT library)
 install(DIRECTORY include/sketchsplat DESTINATION include COMPONENT library)
 install(EXPORT sketchsplat_targets FILE sketchsplatTargets.cmake NAMESPACE sketchsplat::
   DESTINATION lib/cmake/sketchsplat COMPONENT library)
@@ -57,6 +58,10 @@ install(PROGRAMS eval/abc_nef_table.py DESTINATION share/sketchsplat COMPONENT p
 install(PROGRAMS scripts/slurm/array.sh scripts/slurm/merge.sh scripts/slurm/one_node.sh
   scripts/slurm/submit.sh DESTINATION share/sketchsplat/slurm COMPONENT program)
 
+# FreeCAD finds it once it is linked to from its folder Mod: docs/freecad.md.
+install(DIRECTORY freecad/ DESTINATION share/sketchsplat/freecad COMPONENT program
+  PATTERN __pycache__ EXCLUDE)
+
 set(CPACK_PACKAGE_NAME sketchsplat)
 set(CPACK_PACKAGE_VENDOR "sketchsplat contributors")
 set(CPACK_PACKAGE_CONTACT "sketchsplat contributors <nobody@localhost>")
@@ -68,7 +73,7 @@ set(CPACK_COMPONENTS_ALL program)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap, slurm-wlm, parallel, python3")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap, freecad, slurm-wlm, parallel, python3")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
   "Photographs or renderings of a CAD object with known cameras become its\n\
  edges: lines, arcs, circles, ellipses and splines that share their\n\

@@ -17,6 +17,7 @@ int main(int argc, char** argv) try {
   const sketchsplat::CurveSketch sketch = sketchsplat::reconstruct(argv[1], options);
   for (const sketchsplat::Curve& curve : sketch.curves)
     std::cout << name_of(curve.kind) << " of length " << curve.length << "\n";
+  if (sketch.solid) std::cout << "solid of volume " << sketch.solid->volume << "\n";
   sketchsplat::WriteOptions cad;
   cad.scale = 100;  // millimetres per unit of the scene
   sketch.write(argv[2], cad);

@@ -57,20 +57,6 @@ Curve curve_of(const Sketch& sketch, int i) {
   return c;
 }
 
-std::string ending_of(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".stp" ? ".step" : ending;
-}
-
-LengthUnit unit_of(const std::string& name) {
-  const std::vector<std::string> names = length_unit_names();
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end())
-    throw std::invalid_argument("unit: expected mm, cm, m or inch, found " + name);
-  return LengthUnit(at - names.begin());
-}
-
 void write_as(const std::string& ending, const std::string& name, const Sketch& sketch,
               const WriteOptions& options, std::ostream& out) {
   const LengthUnit unit = unit_of(options.unit);
@@ -94,6 +80,20 @@ void write_as(const std::string& ending, const std::string& name, const Sketch& 
 }
 
 }  // namespace
+
+std::string ending_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".stp" ? ".step" : ending;
+}
+
+LengthUnit unit_of(const std::string& name) {
+  const std::vector<std::string> names = length_unit_names();
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end())
+    throw std::invalid_argument("unit: expected mm, cm, m or inch, found " + name);
+  return LengthUnit(at - names.begin());
+}
 
 const char* name_of(CurveKind kind) { return kind_name(StrokeKind(kind)); }
 
@@ -134,7 +134,13 @@ void CurveSketch::write(const std::string& path, const WriteOptions& options) co
 }
 
 CurveSketch read_curves(const std::string& path) {
-  return CurveSketchAccess::make(read_sketch(path));
+  CurveSketch out = CurveSketchAccess::make(read_sketch(path));
+  std::error_code none;
+  if (!std::filesystem::exists(solid_file(path), none)) return out;
+  std::string why;
+  out.solid = CurveSketchAccess::make(read_solid(path), &why);
+  if (!out.solid) out.warnings.push_back(solid_file(path) + ": " + why);
+  return out;
 }
 
 }  // namespace sketchsplat

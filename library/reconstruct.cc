@@ -59,8 +59,11 @@ CurveSketch run(const Scene& scene, Detector* detector, const ReconstructOptions
   try {
     Reconstruction result = reconstruct(scene, detector, method, &progress);
     CurveSketch out = CurveSketchAccess::make(std::move(result.sketch));
+    std::string why;
+    if (result.solid.solid) out.solid = CurveSketchAccess::make(*result.solid.solid, &why);
     out.views = std::move(result.views);
     out.warnings = std::move(result.report.warnings);
+    if (result.solid.solid && !out.solid) out.warnings.push_back("no solid: " + why);
     return out;
   } catch (const TooLittleError& e) {
     return ended(Ending::kTooLittle, e.what());

@@ -8,20 +8,17 @@
 #include <map>
 #include <set>
 
+#include "eval/inspect/neighbours.h"
+
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kParallel = 0.1 * kDegree;
 constexpr double kSame = 1e-4;  // [extents] offsets and radii that are one
 constexpr double kLeastArc = 30 * kDegree, kRoundArc = 180 * kDegree;
 constexpr double kConcyclic = 1e-3;  // [extents]
-
-bool parallel(const Vector3d& a, const Vector3d& b) {
-  return a.cross(b).norm() < std::sin(kParallel);
-}
 
 class Finder {
  public:
@@ -75,43 +72,6 @@ class Finder {
     }
   }
 
-  // Neighbours among things at some offsets, and the two ends if there are more; things at one
-  // offset are one.
-  std::vector<std::pair<int, int>> neighbours(std::vector<std::pair<double, int>> offsets) const {
-    std::sort(offsets.begin(), offsets.end());
-    std::vector<int> kept;
-    double last = -std::numeric_limits<double>::infinity();
-    for (const auto& [offset, index] : offsets) {
-      if (offset - last < kSame * nominal_.extent) continue;
-      kept.push_back(index);
-      last = offset;
-    }
-    std::vector<std::pair<int, int>> out;
-    for (size_t i = 0; i + 1 < kept.size(); ++i) out.push_back({kept[i], kept[i + 1]});
-    if (kept.size() > 2) out.push_back({kept.front(), kept.back()});
-    return out;
-  }
-
-  // Of each set of parallel things, those that are neighbours across.
-  template <typename Direction, typename Offset>
-  std::vector<std::pair<int, int>> parallel_neighbours(const std::vector<int>& things,
-                                                       const Direction& direction,
-                                                       const Offset& offset) const {
-    std::vector<std::pair<int, int>> out;
-    std::set<int> done;
-    for (const int a : things) {
-      if (done.count(a)) continue;
-      std::vector<std::pair<double, int>> offsets;
-      for (const int b : things)
-        if (!done.count(b) && parallel(direction(a), direction(b))) {
-          offsets.push_back({offset(a, b), b});
-          done.insert(b);
-        }
-      for (const auto& pair : neighbours(offsets)) out.push_back(pair);
-    }
-    return out;
-  }
-
   void find_plane_distances() {
     std::vector<int> all;
     for (size_t p = 0; p < nominal_.planes.size(); ++p) all.push_back(int(p));
@@ -119,7 +79,8 @@ class Finder {
     const auto offset = [&](int a, int b) {
       return (nominal_.planes[b].point - nominal_.planes[a].point).dot(nominal_.planes[a].normal);
     };
-    for (const auto& [a, b] : parallel_neighbours(all, direction, offset))
+    for (const auto& [a, b] :
+         parallel_neighbours(all, direction, offset, kSame * nominal_.extent))
       add(DimensionKind::kPlaneDistance, {{FeatureKind::kPlane, a}, {FeatureKind::kPlane, b}});
   }
 
@@ -143,7 +104,8 @@ class Finder {
       ends_of(a, &pa, &end), ends_of(b, &pb, &end);
       return (pb - pa).dot(plane.normal.cross(direction(a)));
     };
-    for (const auto& [a, b] : parallel_neighbours(lines, direction, offset))
+    for (const auto& [a, b] :
+         parallel_neighbours(lines, direction, offset, kSame * nominal_.extent))
       add(DimensionKind::kEdgeDistance, {{FeatureKind::kLine, a}, {FeatureKind::kLine, b}});
     for (size_t i = 0; i < lines.size(); ++i)
       for (size_t k = i + 1; k < lines.size(); ++k) find_corner(lines[i], lines[k]);
@@ -191,23 +153,15 @@ class Finder {
     }
   }
 
-  // Prim's algorithm; concentric circles have no distance.
+  // Concentric circles have no distance.
   void add_spanning_tree(const std::vector<Centre>& circles) {
-    std::vector<bool> in(circles.size());
-    for (size_t count = 1; count < circles.size(); ++count) {
-      in[0] = true;
-      double least = std::numeric_limits<double>::infinity();
-      size_t from = 0, to = 0;
-      for (size_t i = 0; i < circles.size(); ++i)
-        for (size_t k = 0; k < circles.size() && in[i]; ++k) {
-          const double d = (circles[i].circle.centre - circles[k].circle.centre).norm();
-          if (!in[k] && d < least) least = d, from = i, to = k;
-        }
-      in[to] = true;
-      if (least > kSame * nominal_.extent)
+    const auto distance = [&](int i, int k) {
+      return (circles[i].circle.centre - circles[k].circle.centre).norm();
+    };
+    for (const auto& [from, to] : spanning_tree(int(circles.size()), distance))
+      if (distance(from, to) > kSame * nominal_.extent)
         add(DimensionKind::kCentreDistance,
             {{FeatureKind::kCircle, circles[from].edge}, {FeatureKind::kCircle, circles[to].edge}});
-    }
   }
 
   void add_pitch_circles(const std::vector<Centre>& circles) {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <map>
 
+#include "eval/inspect/stroke_errors.h"
 #include "sketches/curve/curve.h"
-#include "sketches/curve/curve_jacobian.h"
 
 namespace sketchsplat {
 namespace {
@@ -23,7 +23,6 @@ using Eigen::VectorXd;
 constexpr int kPlaces = 13;           // of a stroke
 constexpr double kLeastWidth = 0.02;  // of a plane's points, over their length
 constexpr double kLeastFound = 0.5;   // of an edge, that it be a feature
-constexpr int kErrorsOfStroke = 16;   // 12 control coordinates, shift, bend
 
 // Circle through points of a plane: Kasa's linear least squares, exact on circles.
 void fit_circle(const Matrix3Xd& points, const VectorXd& weights, Feature* f) {
@@ -97,36 +96,6 @@ bool is_measured(const Association& association, const std::vector<int>& edges) 
   return found >= kLeastFound * all;
 }
 
-// One standard deviation of each independent error of a stroke: columns of 3 x 16, at a place.
-class StrokeErrors {
- public:
-  StrokeErrors(const Sketch& measured, const SigmaModel& sigma, int stroke)
-      : measured_(measured), sigma_(sigma), stroke_(stroke) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> es(
-        calibrated_covariance(measured, stroke, sigma));
-    root_ = es.eigenvectors() * es.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  }
-
-  Eigen::Matrix<double, 3, kErrorsOfStroke> at(double t) const {
-    const StrokeKind kind = measured_.strokes[stroke_].kind;
-    const double px = sigma_.footprint;
-    Eigen::Matrix<double, 3, kErrorsOfStroke> out =
-        Eigen::Matrix<double, 3, kErrorsOfStroke>::Zero();
-    out.leftCols(root_.cols()) =
-        curve_jacobian(kind, control_points(measured_, stroke_), t).leftCols(root_.rows()) * root_;
-    out.middleCols<3>(12) = sigma_.place(measured_.strokes[stroke_], measured_.evidence[stroke_]) *
-                            Matrix3d::Identity();
-    out.col(15) = sigma_.options.curvature_px2 * bend_at(measured_, stroke_, t, px);
-    return out;
-  }
-
- private:
-  const Sketch& measured_;
-  const SigmaModel& sigma_;
-  int stroke_;
-  MatrixXd root_;
-};
-
 }  // namespace
 
 Feature fit_feature(FeatureKind kind, const Matrix3Xd& points, const VectorXd& weights,
@@ -190,8 +159,8 @@ MeasuredFeature measured_feature(const Nominal& nominal, const Association& asso
         largest = std::max(largest, moves[i].col(k).squaredNorm());
       }
       if (!(largest > 0)) continue;
-      out.errors.push_back(
-          {stroke * kErrorsOfStroke + k, k >= 12, fit_feature(ref.kind, moved, weights, side)});
+      out.errors.push_back({stroke * kErrorsOfStroke + k, k >= kErrorsOfEdgels,
+                            fit_feature(ref.kind, moved, weights, side)});
     }
   }
   return out;

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,11 +57,31 @@ struct WriteOptions {
   bool faces = false;       ///< closed planar loops as faces; STEP
 };
 
+/// The solid that curves bound. Copies share what is below.
+class CurveSolid {
+ public:
+  /// How many lie on each kind of surface: "plane", "cylinder", "cone", "sphere", "torus".
+  std::map<std::string, int> faces;
+  double volume = 0, area = 0;  ///< the scene's own units
+
+  /// Writes its exact boundary as .step; whole or not at all. Throws std::invalid_argument (ending,
+  /// unit, scale) or std::runtime_error (cannot be written).
+  void write(const std::string& path, const WriteOptions& options = {}) const;
+
+ private:
+  friend struct CurveSketchAccess;
+  struct Inside;
+  std::shared_ptr<const Inside> inside_;
+};
+
 /// The result: curves over shared nodes. Copies share what is below.
 class CurveSketch {
  public:
   Eigen::Matrix3Xd nodes;  ///< 3 x N: ends of curves; curves that meet share a column
   std::vector<Curve> curves;
+  /// Absent if the curves tell none (docs/solid.md), or {"solid", "off"} is among
+  /// Options::expert.
+  std::optional<CurveSolid> solid;
   std::vector<std::string> views;     ///< names of those that Curve::views counts
   std::vector<std::string> warnings;  ///< a line each, of views that were left out
   Ending ending = Ending::kDone;
@@ -80,8 +102,8 @@ class CurveSketch {
   std::shared_ptr<const Inside> inside_;
 };
 
-/// Reads a sketch.json, or that of the folder which `sketchsplat reconstruct` wrote. Throws
-/// std::runtime_error.
+/// Reads a sketch.json, or that of the folder which `sketchsplat reconstruct` wrote, and the solid
+/// beside it. Throws std::runtime_error.
 CurveSketch read_curves(const std::string& path);
 
 }  // namespace sketchsplat

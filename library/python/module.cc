@@ -148,6 +148,22 @@ CurveSketch from_folder(const std::string& scene, const std::string& preset,
   return reconstruct(scene, options);
 }
 
+void bind_solid(py::module_* m) {
+  py::class_<CurveSolid>(*m, "CurveSolid")
+      .def_readonly("faces", &CurveSolid::faces, "How many lie on each kind of surface")
+      .def_readonly("volume", &CurveSolid::volume)
+      .def_readonly("area", &CurveSolid::area)
+      .def(
+          "write",
+          [](const CurveSolid& s, const std::string& path, double scale, const std::string& unit) {
+            WriteOptions options;
+            options.scale = scale, options.unit = unit;
+            s.write(path, options);
+          },
+          py::arg("path"), py::kw_only(), py::arg("scale") = 1.0, py::arg("unit") = "mm",
+          "Writes its exact boundary as .step");
+}
+
 void bind_curves(py::module_* m) {
   py::class_<Curve>(*m, "Curve")
       .def_property_readonly("kind", [](const Curve& c) { return name_of(c.kind); })
@@ -172,6 +188,7 @@ void bind_curves(py::module_* m) {
       });
   py::class_<CurveSketch>(*m, "CurveSketch")
       .def_readonly("curves", &CurveSketch::curves)
+      .def_readonly("solid", &CurveSketch::solid, "That the curves bound; None if they tell none")
       .def_property_readonly(
           "nodes", [](const CurveSketch& s) { return Eigen::MatrixXd(s.nodes.transpose()); },
           "N x 3")
@@ -220,6 +237,7 @@ py::dict scores(const CurveSketch& sketch, const std::string& truth, const std::
 PYBIND11_MODULE(sketchsplat, m) {
   m.doc() = "Calibrated images of a CAD object become its edges: exact 3D curves.";
   m.attr("__version__") = library_version();
+  bind_solid(&m);
   bind_curves(&m);
   const py::dict none;
   const Numbers no_numbers(0);

@@ -8,6 +8,18 @@
 
 namespace sketchsplat {
 
+namespace {
+
+// The executable or the library that this code is part of.
+std::filesystem::path own_folder() {
+  Dl_info info;
+  if (!::dladdr(reinterpret_cast<const void*>(&plugin_path), &info) || !info.dli_fname) return {};
+  std::error_code none;
+  return std::filesystem::canonical(info.dli_fname, none).parent_path();
+}
+
+}  // namespace
+
 std::string plugin_path(const std::string& file, const std::string& built) {
   namespace fs = std::filesystem;
   std::error_code none;
@@ -15,6 +27,9 @@ std::string plugin_path(const std::string& file, const std::string& built) {
   // Without /proc nobody knows where we are; the current folder is not to be looked into.
   for (const fs::path& folder : {bin, bin / ".." / "lib" / "sketchsplat"})
     if (!bin.empty() && fs::exists(folder / file, none)) return folder / file;
+  const fs::path own = own_folder();
+  if (!own.empty() && fs::exists(own / "sketchsplat" / file, none))
+    return own / "sketchsplat" / file;
   return fs::path(built) / file;
 }
 

@@ -7,6 +7,7 @@
 
 #include "datasets/types/errors.h"
 #include "sketches/io/io.h"
+#include "sketches/io/io_solid.h"
 #include "sketches/io/json_text.h"
 
 namespace sketchsplat {
@@ -34,6 +35,17 @@ Sketch read_sketch(const std::string& given) {
   std::ifstream in(path);
   if (!in) throw InputError(path, "a sketch.json", "no file that can be read");
   return read_sketch_json(in, path);
+}
+
+std::string solid_file(const std::string& given) {
+  return (fs::path(sketch_file(given)).parent_path() / "solid.json").string();
+}
+
+Solid read_solid(const std::string& given) {
+  const std::string path = solid_file(given);
+  std::ifstream in(path);
+  if (!in) throw InputError(path, "the solid that reconstruct found", "no file that can be read");
+  return read_solid_json(in, path);
 }
 
 SketchOrigin sketch_origin(const std::string& given) {

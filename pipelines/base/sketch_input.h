@@ -4,6 +4,7 @@
 #include <string>
 
 #include "sketches/graph/sketch.h"
+#include "sketches/graph/solid.h"
 
 namespace sketchsplat {
 
@@ -12,6 +13,12 @@ std::string sketch_file(const std::string& given);
 
 /// Throws InputError.
 Sketch read_sketch(const std::string& given);
+
+/// solid.json in that folder, or beside that file.
+std::string solid_file(const std::string& given);
+
+/// Throws InputError.
+Solid read_solid(const std::string& given);
 
 /// What the files beside a sketch say of how it was made.
 struct SketchOrigin {

@@ -173,6 +173,7 @@ bool Measurer::reconstruct(const BenchJob& job, const std::string& result, Bench
   if (best.status == 0) {
     add_stages(report, row);
     row->set("peak_mb", report.at("peak_mb").get<double>());
+    row->set("solid", report.at("solid").at("written").get<bool>() ? "written" : "refused");
   }
   row->set("total", best.seconds);
   row->set("cpu_seconds", best.cpu_seconds);
@@ -194,6 +195,17 @@ void Measurer::add_accuracy(const std::string& prediction, const std::string& tr
   fs::remove(file);
   for (const char* no_number : {"protocol", "prediction", "ground_truth"}) numbers.erase(no_number);
   add_numbers(numbers, "", row);
+}
+
+// Of scenes whose part is known.
+void Measurer::judge_solid(const std::string& truth, bool written, BenchRow* row) const {
+  constexpr double kRight = 0.99;  // IoU of the volumes
+  std::error_code none;
+  if (!fs::exists(truth + "/groundtruth/part.step", none)) return;
+  const bool right = written && row->number("solid_iou") >= kRight;
+  row->set("solid_right", right);
+  row->set("solid_wrong", written && !right);
+  row->set("solid_refused", !written);
 }
 
 const Measurer::SceneFacts& Measurer::facts_of(const std::string& folder) {
@@ -241,6 +253,7 @@ BenchRow Measurer::measure(const BenchJob& job, const std::string& result) {
   if (!done) fs::remove(nothing);
   for (const auto& [name, text] : run.labels) row.set(name, text);
   for (const auto& [name, value] : run.numbers) row.set(name, value);
+  judge_solid(folder, row.label("solid") == "written", &row);
   const SceneFacts& facts = facts_of(folder);
   row.set("decode", facts.decode);
   row.set("total_per_decode", row.number("total") / facts.decode);

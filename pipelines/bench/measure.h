@@ -37,6 +37,7 @@ class Measurer {
   bool make_scene(const BenchJob& job, BenchRow* row);
   bool reconstruct(const BenchJob& job, const std::string& result, BenchRow* row);
   void add_accuracy(const std::string& prediction, const std::string& truth, BenchRow* row);
+  void judge_solid(const std::string& truth, bool written, BenchRow* row) const;
   const SceneFacts& facts_of(const std::string& folder);
 
   Settings settings_;

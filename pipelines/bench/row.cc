@@ -2,6 +2,7 @@
 #include "pipelines/bench/row.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -125,6 +126,24 @@ std::vector<BenchRow> mean_rows(const std::vector<BenchRow>& rows) {
     }
   }
   return means;
+}
+
+std::string solid_counts(const std::vector<BenchRow>& rows) {
+  std::vector<std::pair<std::string, std::array<int, 3>>> counts;
+  for (const BenchRow& row : rows) {
+    if (!std::isfinite(row.number("solid_right"))) continue;
+    auto own = std::find_if(counts.begin(), counts.end(),
+                            [&](const auto& c) { return c.first == row.variant; });
+    if (own == counts.end()) own = counts.insert(counts.end(), {row.variant, {0, 0, 0}});
+    own->second[0] += row.number("solid_right") > 0;
+    own->second[1] += row.number("solid_wrong") > 0;
+    own->second[2] += row.number("solid_refused") > 0;
+  }
+  std::string text;
+  for (const auto& [variant, n] : counts)
+    text += "solids, " + variant + ": " + std::to_string(n[0]) + " right, " + std::to_string(n[1]) +
+            " wrong, " + std::to_string(n[2]) + " refused\n";
+  return text;
 }
 
 std::string bench_table(const std::vector<BenchRow>& rows,

@@ -19,7 +19,9 @@ struct BenchRow {
   /// Named numbers; NaN where there is none. Of every row that was run: what `evaluate --json`
   /// tells (nested names joined by '_': "fine_F5"), seconds per stage of the run, "total" (seconds
   /// that a user waits), "cpu_seconds" (of all threads), "decode" (seconds that one thread takes to
-  /// decode the scene's images), "total_per_decode", "peak_mb"; of a level of an axis: "level".
+  /// decode the scene's images), "total_per_decode", "peak_mb"; of parts that
+  /// are known "solid_right", "solid_wrong", "solid_refused", one of which is 1; of a level of an
+  /// axis: "level".
   Numbers numbers;
 
   std::string label(const std::string& name) const;  ///< empty if there is none
@@ -30,6 +32,9 @@ struct BenchRow {
 
 /// Means over the scenes, one row per variant, the scene called "mean". NaNs do not take part.
 std::vector<BenchRow> mean_rows(const std::vector<BenchRow>& rows);
+
+/// A line per variant: how many solids are right, wrong and refused; empty if no part is known.
+std::string solid_counts(const std::vector<BenchRow>& rows);
 
 /// The rows under their headings, aligned, a blank line between scenes. "-" where there is no
 /// number. `columns` are names of numbers, empty: all.

@@ -5,8 +5,8 @@
 
 namespace sketchsplat {
 
-// Pages that need nothing but themselves. The texts are made from *_page.html, page.css
-// and page.js.
+// Pages that need nothing but themselves. The texts are made from *_page.html, page.css, page.js
+// and solid.js.
 
 extern const char* const kReportPage;
 extern const char* const kInspectionPage;

@@ -13,8 +13,10 @@ const rgb = c => `rgb(${c.map(x => Math.round(255 * x)).join(',')})`;
 // A 3D view of polylines, drawn on a plain canvas: what browsers without a graphics card have, too.
 // items: [{points: [x, y, z, ...]}], the object in [-0.5, 0.5], z up. look(item, id, chord) is the
 // colour [r, g, b] of a chord in [0, 1], or null if it is not shown; picked(id, point) is called at
-// a click on an item (point: of the curve), picked(-1) beside all of them.
-function makeViewer(canvas, items, look, picked) {
+// a click on an item (point: of the curve), picked(-1) beside all of them. `solid`, if any, is drawn
+// between what it hides and what it does not (solid.js); a click on a face of it alone is
+// picked(-1, null, face).
+function makeViewer(canvas, items, look, picked, solid = null) {
   const START = {yaw: -0.9, pitch: 0.5, distance: 2.3, target: [0, 0, 0]};
   const FOCAL = 2.4, NEAR = 1e-3;
   let camera = structuredClone(START), marked = -1, orthographic = false, queued = false;
@@ -69,6 +71,33 @@ function makeViewer(canvas, items, look, picked) {
     if (color !== null) context.stroke();
     context.beginPath();
   }
+  // What no face hides, over the faces.
+  function drawSeen(item, id, points) {
+    context.lineWidth = id === marked ? 4.5 : 2;
+    for (let i = 0; i + 1 < points.length; ++i) {
+      const color = look(item, id, i), chord = color && clipped(points[i], points[i + 1]);
+      if (!chord) continue;
+      context.strokeStyle = id === marked ? 'rgb(234,179,8)' : rgb(color);
+      const pieces = Math.max(1, Math.min(200, Math.ceil(Math.hypot(chord[1][0] - chord[0][0], chord[1][1] - chord[0][1]) / 5)));
+      const along = t => points[i].map((v, k) => v + (points[i + 1][k] - v) * t);
+      context.beginPath();
+      for (let k = 0; k < pieces; ++k) {
+        const middle = along((k + .5) / pieces), piece = clipped(along(k / pieces), along((k + 1) / pieces));
+        if (!piece || solid.hides(...place(middle), middle[2])) continue;
+        context.moveTo(...piece[0]); context.lineTo(...piece[1]);
+      }
+      context.stroke();
+    }
+  }
+  function drawSolid(frame, order) {
+    if (!solid || !(solid.opacity > 0)) return;
+    const light = [0, 1, 2].map(k => frame[2][k] * .9 + frame[1][k] * .35 + frame[0][k] * .25);
+    const project = p => { const e = eye(frame, p); return [...place(e), e[2]]; };
+    solid.render(Math.max(1, Math.round(canvas.clientWidth)), Math.max(1, Math.round(canvas.clientHeight)), project, orthographic, light);
+    solid.paint(context);
+    context.setLineDash([]);
+    for (const {item, id, points} of order) drawSeen(item, id, points);
+  }
   function drawMarks(frame) {
     context.setLineDash([]);
     context.strokeStyle = context.fillStyle = 'rgb(220,38,38)';
@@ -92,6 +121,7 @@ function makeViewer(canvas, items, look, picked) {
     });
     order.sort((a, b) => (a.id === marked) - (b.id === marked) || b.depth - a.depth || a.id - b.id);
     for (const {item, id, points} of order) drawItem(item, id, points, frame);
+    drawSolid(frame, order);
     drawMarks(frame);
   }
   function redraw() {
@@ -147,7 +177,7 @@ function makeViewer(canvas, items, look, picked) {
     fingers.delete(e.pointerId);
     if (e.type !== 'pointerup' || moved >= 4 || e.button !== 0) return;
     const {id, point} = at(e.offsetX, e.offsetY);
-    picked(id, point);
+    picked(id, point, id < 0 && solid ? solid.faceAt(e.offsetX, e.offsetY) : -1);
   };
   canvas.onpointermove = e => {
     const last = fingers.get(e.pointerId);

@@ -119,9 +119,11 @@ std::string report_axes(const Suite& suite, const std::vector<BenchRow>& rows,
   return tables;
 }
 
-std::string report_scenes(std::vector<BenchRow> rows, const std::string& out, bool ablation) {
-  write_chart(accuracy_chart(rows), out + "/chart");
-  const std::vector<BenchRow> means = mean_rows(rows);
+std::string report_scenes(const std::vector<BenchRow>& runs, const std::string& out,
+                          bool ablation) {
+  write_chart(accuracy_chart(runs), out + "/chart");
+  const std::vector<BenchRow> means = mean_rows(runs);
+  std::vector<BenchRow> rows = runs;
   rows.insert(rows.end(), means.begin(), means.end());
   std::vector<std::string> columns = {"F5", "F2", "F1", "fine_F2", "fine_F1", "acc", "comp"};
   const std::vector<std::string> rest =
@@ -140,7 +142,10 @@ std::string report_scenes(std::vector<BenchRow> rows, const std::string& out, bo
                                           "total_per_decode",
                                           "peak_mb"};
   columns.insert(columns.end(), rest.begin(), rest.end());
-  return bench_table(rows, columns);
+  const std::string solids = solid_counts(runs);
+  if (!solids.empty())
+    columns.insert(columns.end(), {"solid_right", "solid_wrong", "solid_refused"});
+  return bench_table(rows, columns) + (solids.empty() ? "" : "\n" + solids);
 }
 
 void run_bench_verb(const BenchArguments& arguments, const CommonOptions& common,

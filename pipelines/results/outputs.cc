@@ -108,10 +108,25 @@ std::string product_name(const Scene& scene, const std::string& otherwise) {
   return name.empty() ? otherwise : name;
 }
 
-StepSolidOptions solid_options(const Scene& scene, const KnownScale& scale,
-                               const OutputOptions& options) {
+double footprint_of(const Reconstruction& reconstruction) {
+  for (const auto& [name, value] : reconstruction.report.counts)
+    if (name == "footprint") return value;
+  return 0;
+}
+
+SolidOutputOptions solid_options(const Reconstruction& reconstruction, const Scene& scene,
+                                 const KnownScale& scale, const OutputOptions& options) {
   const CadOptions cad = at_scale(options.cad, scale);
-  return {product_name(scene, "solid"), cad.scale, cad.unit};
+  Json extra = {{"program", "sketchsplat"}, {"version", program_version()}};
+  if (!scale.source.empty()) extra["scale"] = Json::parse(scale_json(scale));
+  SolidOutputOptions out;
+  out.step = {product_name(scene, "solid"), cad.scale, cad.unit};
+  out.scale = scale;
+  out.sigma.footprint = footprint_of(reconstruction);
+  out.sigma.bias_px = typical_bias_px(reconstruction.sketch);
+  out.shell = options.shell;
+  out.extra = extra.dump();
+  return out;
 }
 
 void write_sketch(const std::string& folder, const Reconstruction& reconstruction,
@@ -123,8 +138,7 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
   extra["regularities"] = json_of(reconstruction.report.regularities);
   extra["views"] = reconstruction.views;
   if (!scale.source.empty()) extra["scale"] = Json::parse(scale_json(scale));
-  for (const auto& [name, value] : reconstruction.report.counts)
-    if (name == "footprint") extra[name] = value;
+  if (footprint_of(reconstruction) > 0) extra["footprint"] = footprint_of(reconstruction);
   if (reconstruction.proposed.size() > 0) {
     std::ostringstream proposed;
     write_sketch_json(proposed, reconstruction.proposed);
@@ -151,15 +165,12 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
 // What was asked for and cannot be had is a warning: the curves are worth something without.
 KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& options,
                     RunReport* report, Progress* progress) {
-  double footprint = 0;
-  for (const auto& [name, value] : reconstruction.report.counts)
-    if (name == "footprint") footprint = value;
   // As its file counts curves and nodes.
   std::stringstream file;
   write_sketch_json(file, reconstruction.sketch);
   const Sketch sketch = read_sketch_json(file, "sketch.json");
   try {
-    return known_scale(options, sketch, footprint, reconstruction.tags);
+    return known_scale(options, sketch, footprint_of(reconstruction), reconstruction.tags);
   } catch (const InputError& e) {
     warn(std::string(e.what()) + ": all lengths stay in world units", report, progress);
     KnownScale none;
@@ -196,7 +207,10 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
     Stage stage("write", 0, &reconstruction.report, progress);
     scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
     write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
-    solid = write_solid(folder, reconstruction.solid, solid_options(scene, scale, output_options));
+    solid = write_solid(folder, reconstruction.solid,
+                        solid_options(reconstruction, scene, scale, output_options));
+    if (solid.shell_asked && !solid.shell_written)
+      warn("no shell is written: " + solid.why_no_shell, &reconstruction.report, progress);
     write_cameras(folder + "/cameras", reconstruction.refined);
     remove_old_overlays(folder);
     Scene seen = scene;
@@ -208,6 +222,7 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
     stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +
                  " photographs");
   }
+  if (!solid.mesh.empty()) page.solid = &solid;
   const std::string report = report_json({&reconstruction, &scene, fields_json(all.list),
                                           output_options.reproducible, &scale, &solid});
   write_atomically(folder + "/report.json", [&](std::ostream& out) { out << report; });

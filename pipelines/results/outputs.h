@@ -12,11 +12,10 @@ namespace sketchsplat {
 
 /// Writes everything that `reconstruct` promises into the folder: sketch.json,
 /// parametric_edges.json, sketch.obj, cameras/ (if they were refined), sketch.step,
-/// edge_points.ply, solid.step (if the strokes tell one), overlay_<view>.png, report.json and
-/// report.html. The time that this takes
-/// becomes a stage of the report. sketch.obj and sketch.step are at the scale that is returned, the
-/// others in world units. Throws OutputError; TooLittleError, when all is written, if a solid is
-/// required and there is none.
+/// edge_points.ply, the files of write_solid() (if the strokes tell one), overlay_<view>.png,
+/// report.json and report.html. The time that this takes becomes a stage of the report. sketch.obj,
+/// STEP and tables are at the scale that is returned, the others in world units. Throws
+/// OutputError; TooLittleError, when all is written, if a solid is required and there is none.
 KnownScale write_outputs(const std::string& folder, Reconstruction reconstruction,
                          const Scene& scene, ReconstructOptions reconstruct_options,
                          OutputOptions output_options, Progress* progress);

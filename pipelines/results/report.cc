@@ -132,6 +132,27 @@ Json viewpoints_json(const std::vector<Eigen::Vector3d>& viewpoints, const Exten
   return directions;
 }
 
+// Triangles of the faces of the solid or the shell, for the screen, relative to the extent.
+Json face_json(const FaceMesh& mesh, SurfaceKind kind, const Extent& extent) {
+  Json points = Json::array(), triangles = Json::array();
+  for (const Eigen::Vector3d& p : mesh.points)
+    for (int k = 0; k < 3; ++k)
+      points.push_back(std::round((p[k] - extent.center[k]) / extent.size * 1e5) / 1e5);
+  for (const std::array<int, 3>& t : mesh.triangles)
+    for (const int corner : t) triangles.push_back(corner);
+  return {{"kind", surface_name(kind)}, {"points", points}, {"triangles", triangles}};
+}
+
+Json faces_json(const SolidOutcome* solid, const Extent& extent) {
+  constexpr size_t kMostBytes = 300'000;  // of a page of 3 MB
+  Json faces = Json::array();
+  if (!solid || !(extent.size > 0)) return faces;
+  const Solid& shown = solid->written ? *solid->search.solid : *solid->search.shell;
+  for (size_t f = 0; f < solid->mesh.size(); ++f)
+    faces.push_back(face_json(solid->mesh[f], shown.surfaces[shown.faces[f].surface].kind, extent));
+  return faces.dump().size() > kMostBytes ? Json::array() : faces;
+}
+
 }  // namespace
 
 Extent sketch_extent(const Sketch& sketch) {
@@ -187,6 +208,7 @@ std::string report_html(const std::string& report, const ReportPage& page) {
       {"center", json_of(extent.center)}, {"size", extent.size}, {"sides", json_of(extent.sides)}};
   data["curves"] = curves_json(*page.sketch, extent);
   data["viewpoints"] = viewpoints_json(page.viewpoints, extent);
+  data["faces"] = faces_json(page.solid, extent);
   data["photos"] = Json::array();
   for (const PagePhoto& photo : page.photos) data["photos"].push_back(photo_json(photo));
 

@@ -36,6 +36,7 @@ struct ReportPage {
   std::vector<PagePhoto> photos = {};  ///< under the curves
   /// Where the views of Evidence::views stand, world; none: nobody knows what they see.
   std::vector<Eigen::Vector3d> viewpoints = {};
+  const SolidOutcome* solid = nullptr;  ///< whose faces are shown; null: none
 };
 
 /// report.html: one page that needs nothing but itself. `report` is the text of report.json.

@@ -8,28 +8,108 @@
 #include <stdexcept>
 
 #include "datasets/types/errors.h"
+#include "pipelines/base/atomic_file.h"
 #include "pipelines/results/brep_plugin.h"
+#include "sketches/io/io_solid.h"
 
 namespace sketchsplat {
 
-SolidOutcome write_solid(const std::string& folder, const SolidSearch& search,
-                         const StepSolidOptions& options) {
-  SolidOutcome out{search, {}, false, search.why};
-  const std::string path = folder + "/solid.step";
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
-  if (!search.solid) return out;
+namespace {
+
+constexpr double kDeflection = 2e-3;  // of the extent: of meshes to look at
+constexpr const char* kFiles[] = {"/solid.step", "/solid.json", "/surfaces.csv", "/dimensions.csv",
+                                  "/shell.step"};
+
+void write_text(const std::string& path, const std::string& text) {
+  write_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
+// The check of what is written to `path`; with a clause that says why not, it is not.
+SolidCheck checked(const Solid& solid, const std::string& path, const StepSolidOptions& options) {
   try {
-    out.check = brep_plugin().write_solid_step(*search.solid, path, options);
-    out.written = out.check.valid;
-    out.why = out.check.why;
+    return brep_plugin().write_solid_step(solid, path, options);
   } catch (const OutputError&) {
     throw;
   } catch (const std::runtime_error& e) {  // the plug-in is not installed
-    out.why = e.what();
+    SolidCheck none;
+    none.why = e.what();
+    return none;
   }
+}
+
+void write_tables(const std::string& folder, const SolidOutputOptions& options, SolidOutcome* out) {
+  std::vector<double> areas;
+  for (const FaceMesh& face : out->mesh) areas.push_back(face.area);
+  TableScale scale;
+  if (!options.scale.source.empty())
+    scale = {length_unit_names()[int(options.scale.unit)], options.scale.units_per_world,
+             options.scale.sigma_relative};
+  out->tables = solid_tables(*out->search.solid, areas, options.sigma, scale);
+  write_text(folder + "/surfaces.csv", surfaces_csv(*out->tables));
+  write_text(folder + "/dimensions.csv", dimensions_csv(*out->tables));
+  write_atomically(folder + "/solid.json", [&](std::ostream& file) {
+    write_solid_json(file, *out->search.solid, options.extra);
+  });
+}
+
+void write_shell(const std::string& folder, const SolidOutputOptions& options, SolidOutcome* out) {
+  out->why_no_shell = "no face is sure, by the second-best choice, curves left over and masks";
+  if (!out->search.shell) return;
+  StepSolidOptions step = options.step;
+  step.open = true;
+  out->shell_check = checked(*out->search.shell, folder + "/shell.step", step);
+  out->shell_written = out->shell_check.valid;
+  out->why_no_shell = out->shell_check.why;
+  if (out->shell_written) out->mesh = brep_plugin().mesh_solid(*out->search.shell, kDeflection);
+}
+
+}  // namespace
+
+SolidOutcome write_solid(const std::string& folder, const SolidSearch& search,
+                         const SolidOutputOptions& options) {
+  SolidOutcome out;
+  out.search = search;
+  out.why = search.why;
+  std::error_code ignored;
+  for (const char* file : kFiles) std::filesystem::remove(folder + file, ignored);
+  if (search.solid) {
+    out.check = checked(*search.solid, folder + "/solid.step", options.step);
+    out.written = out.check.valid;
+    out.why = out.check.why;
+  }
+  if (out.written) {
+    out.mesh = brep_plugin().mesh_solid(*search.solid, kDeflection);
+    write_tables(folder, options, &out);
+  }
+  out.shell_asked = options.shell && !out.written;
+  if (out.shell_asked) write_shell(folder, options, &out);
   return out;
 }
+
+namespace {
+
+std::map<std::string, int> faces_by_kind(const Solid& solid) {
+  std::map<std::string, int> faces;
+  for (const SolidFace& face : solid.faces)
+    ++faces[surface_name(solid.surfaces[face.surface].kind)];
+  return faces;
+}
+
+nlohmann::ordered_json shell_json(const SolidOutcome& outcome) {
+  nlohmann::ordered_json json = {{"written", outcome.shell_written}};
+  if (!outcome.shell_written) json["why"] = outcome.why_no_shell;
+  if (!outcome.search.shell) return json;
+  json["faces"] = faces_by_kind(*outcome.search.shell);
+  json["faces_sure"] = outcome.search.shell->faces.size();
+  json["faces_of_best"] = outcome.search.faces;
+  if (outcome.shell_written) {
+    json["area"] = outcome.shell_check.area;
+    json["tolerance"] = outcome.shell_check.tolerance;
+  }
+  return json;
+}
+
+}  // namespace
 
 std::string solid_json(const SolidOutcome& outcome) {
   using Json = nlohmann::ordered_json;
@@ -44,10 +124,7 @@ std::string solid_json(const SolidOutcome& outcome) {
   json["cells_tried"] = search.cells;
   if (search.solid) {
     const Solid& solid = *search.solid;
-    std::map<std::string, int> faces;
-    for (const SolidFace& face : solid.faces)
-      ++faces[surface_name(solid.surfaces[face.surface].kind)];
-    json["faces"] = faces;
+    json["faces"] = faces_by_kind(solid);
     json["inferred_edges"] = std::count(solid.inferred.begin(), solid.inferred.end(), true);
     json["gap"] = solid.gap;
   }
@@ -56,6 +133,12 @@ std::string solid_json(const SolidOutcome& outcome) {
     json["area"] = outcome.check.area;
     json["tolerance"] = outcome.check.tolerance;
   }
+  if (outcome.tables) {
+    json["unit"] = outcome.tables->unit;
+    json["surfaces"] = Json::parse(surfaces_json(*outcome.tables));
+    json["dimensions"] = Json::parse(dimensions_json(*outcome.tables));
+  }
+  if (outcome.shell_asked) json["shell"] = shell_json(outcome);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "eval/solids/solid_tables.h"
+#include "pipelines/results/known_scale.h"
 #include "sketches/io/io.h"
+#include "topology/brep/mesh_solid.h"
 #include "topology/brep/solid_step.h"
 #include "topology/solid/find_solid.h"
 
@@ -14,16 +19,33 @@ struct SolidOutcome {
   SolidSearch search;
   SolidCheck check;  ///< of the boundary representation; empty if there was nothing to check
   bool written = false;
-  std::string why;  ///< if not: a clause
+  std::string why;                    ///< if not: a clause
+  std::optional<SolidTables> tables;  ///< of the solid that was written
+  std::vector<FaceMesh> mesh;         ///< of the solid, or the shell, that was written
+
+  bool shell_asked = false, shell_written = false;
+  SolidCheck shell_check;
+  std::string why_no_shell;  ///< a clause
 };
 
-/// Checks the solid that was found and writes `folder`/solid.step; if there is none that is valid,
-/// nothing is written and a file of an earlier run goes. Throws OutputError.
+/// How solids are written, and what is known beside them.
+struct SolidOutputOptions {
+  StepSolidOptions step;
+  KnownScale scale;
+  SigmaModel sigma;          ///< of the strokes, without alignment
+  bool shell = false;        ///< if no solid is written: the faces that are sure
+  std::string extra = "{}";  ///< JSON object: further members of solid.json
+};
+
+/// Checks the solid that was found and writes it to `folder`: solid.step, solid.json, surfaces.csv
+/// and dimensions.csv; or, if it is asked for, the shell: shell.step. What is not valid is not
+/// written, and files of an earlier run go. Throws OutputError.
 SolidOutcome write_solid(const std::string& folder, const SolidSearch& search,
-                         const StepSolidOptions& options);
+                         const SolidOutputOptions& options);
 
 /// JSON object: written, why, curves in doubt, numbers of faces by surface, volume, area and
-/// tolerance in world units, inferred edges, margin in nats.
+/// tolerance in world units, inferred edges, margin in nats, surfaces and dimensions as in their
+/// tables; the shell, if it was asked for.
 std::string solid_json(const SolidOutcome& outcome);
 
 }  // namespace sketchsplat

@@ -308,6 +308,8 @@ void list_fields(CadOptions* o, Fields* f) {
 
 void list_fields(OutputOptions* o, Fields* f) {
   f->add("overlays", &o->overlays, "views", 0, 100, "Views over which the curves are drawn");
+  f->add("shell", &o->shell, "If no solid closes, write the faces that are sure: shell.step")
+      .expert = true;
   f->add("point-spacing", &o->point_spacing, "of the extent", 1e-5, 1,
          "Distance of the samples in edge_points.ply")
       .expert = true;

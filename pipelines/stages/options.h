@@ -91,6 +91,7 @@ struct CadOptions {
 struct OutputOptions {
   int overlays = 4;              ///< views that are drawn over
   double point_spacing = 0.005;  ///< fraction of the sketch's largest extent
+  bool shell = false;            ///< the faces that are sure, where they do not close to a solid
   bool reproducible = false;     ///< no times, memory and threads in the reports
   CadOptions cad;                ///< of sketch.step
 };

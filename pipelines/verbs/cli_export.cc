@@ -15,6 +15,7 @@
 #include "pipelines/base/sketch_input.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/pages/overlay.h"
+#include "pipelines/results/brep_plugin.h"
 #include "pipelines/results/known_scale.h"
 #include "pipelines/results/outputs.h"
 #include "pipelines/results/report.h"
@@ -27,7 +28,7 @@ namespace sketchsplat {
 namespace {
 
 struct ExportArguments {
-  std::string sketch, out;
+  std::string sketch, out, solid;
   std::string format;  // empty: by the ending of `out`
   CadOptions cad;
   double min_confidence = 0;
@@ -35,6 +36,8 @@ struct ExportArguments {
   double deflection = 1e-4;
   double spacing = OutputOptions().point_spacing;
 };
+
+constexpr char kNoTags[] = "--scale-by tag is for reconstruct: a sketch holds no tags";
 
 const std::vector<std::string> kFormats = {"step", "dxf", "svg",        "obj",
                                            "glb",  "ply", "parametric", "sketch"};
@@ -123,8 +126,7 @@ void check(const ExportArguments& arguments, const std::string& format) {
   const bool cad =
       format == "step" || format == "dxf" || format == "svg" || format == "obj" || format == "glb";
   check_scale(arguments.cad);
-  if (wants_tags(arguments.cad))
-    throw UsageError("--scale-by tag is for reconstruct: a sketch holds no tags");
+  if (wants_tags(arguments.cad)) throw UsageError(kNoTags);
   if (!cad && format != "sketch" && has_reference(arguments.cad))
     throw UsageError("--scale-by is for step, dxf, svg, obj and sketch: " + format +
                      " is in the scene's own units");
@@ -145,7 +147,29 @@ Sketch confident(const Sketch& sketch, double least, const std::string& path, Pr
   return keep_confident(sketch, least);
 }
 
+// The solid that reconstruct found, as it was chosen then: there are no images to choose by.
+void export_solid(const ExportArguments& arguments, bool json) {
+  const Solid solid = read_solid(arguments.sketch);
+  const CadOptions& options = arguments.cad;
+  const KnownScale scale = options.scale_given || has_reference(options)
+                               ? scale_of(read_sketch(arguments.sketch), arguments)
+                               : stated_scale(options, solid_file(arguments.sketch));
+  const CadOptions cad = at_scale(options, scale);
+  const std::string name = std::filesystem::path(arguments.solid).stem().string();
+  const SolidCheck check =
+      brep_plugin().write_solid_step(solid, arguments.solid, {name, cad.scale, cad.unit});
+  if (!check.valid) throw InputError(solid_file(arguments.sketch), "a closed solid", check.why);
+  if (json)
+    print_json({{"file", arguments.solid}, {"format", "step"}, {"faces", solid.faces.size()}});
+}
+
 void run_export(const ExportArguments& arguments, bool json, Progress* progress) {
+  if (!arguments.solid.empty()) {
+    check_scale(arguments.cad);
+    if (wants_tags(arguments.cad)) throw UsageError(kNoTags);
+    export_solid(arguments, json && arguments.out.empty());
+    if (arguments.out.empty()) return;
+  }
   const std::string format = arguments.format.empty() ? format_of(arguments.out) : arguments.format;
   if (format.empty())
     throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
@@ -177,7 +201,11 @@ Verb export_verb() {
   sketch.required = sketch.positional = true;
   Field& out = f.add("out", &arguments->out, "FILE", "The file to write");
   out.required = true;
+  out.unless = "solid";
   out.short_name = "o";
+  f.add("solid", &arguments->solid, "FILE.step",
+        "Write the solid that reconstruct found, from solid.json beside the sketch; nothing is "
+        "searched for anew");
   f.choose("format", &arguments->format, kFormats, "If left out, the ending of FILE decides");
   f.group("Output");
   f.add("min-confidence", &arguments->min_confidence, "", 0, 1,
@@ -193,7 +221,8 @@ Verb export_verb() {
   verb.examples = {"sketchsplat export out/part/sketch.json --out part.step --unit inch --scale 2",
                    "sketchsplat export out/part -o part.step --faces --scale 50",
                    "sketchsplat export out/part -o part.dxf --scale-by circle:12=25.4mm",
-                   "sketchsplat export out/part -o part.obj --deflection 1e-5"};
+                   "sketchsplat export out/part -o part.obj --deflection 1e-5",
+                   "sketchsplat export out/part --solid part_solid.step --scale 50 --unit cm"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {
     run_export(*arguments, common.json, progress);

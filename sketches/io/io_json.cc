@@ -8,7 +8,9 @@
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/io/io.h"
+#include "sketches/io/json_reader.h"
 #include "sketches/io/json_text.h"
+#include "sketches/io/sketch_json.h"
 
 namespace sketchsplat {
 namespace {
@@ -16,9 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormatVersion = 1;
-constexpr size_t kMost = 50000;  // nodes, strokes, handles of one: adding them copies the others
-
-Json json_of(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 // What a reader who does not know our control points wants to know; we do not read it back.
 void add_derived(const Sketch& sketch, int i, Json* stroke) {
@@ -26,25 +25,25 @@ void add_derived(const Sketch& sketch, int i, Json* stroke) {
   if (kind == StrokeKind::kArc || kind == StrokeKind::kCircle) {
     const CircleParameters c = circle_parameters(sketch, i);
     if (!c.straight) {
-      (*stroke)["centre"] = json_of(c.centre);
-      (*stroke)["normal"] = json_of(c.normal);
+      (*stroke)["centre"] = json_of_point(c.centre);
+      (*stroke)["normal"] = json_of_point(c.normal);
       (*stroke)["radius"] = c.radius;
     }
     if (kind == StrokeKind::kArc) (*stroke)["angle"] = c.angle;
   } else if (kind == StrokeKind::kEllipse) {
     const ControlPoints c = control_points(sketch, i);
     const EllipseAxes axes = principal_axes(c.p[1], c.p[2]);
-    (*stroke)["centre"] = json_of(c.p[0]);
-    (*stroke)["major"] = json_of(axes.major);
-    (*stroke)["minor"] = json_of(axes.minor);
+    (*stroke)["centre"] = json_of_point(c.p[0]);
+    (*stroke)["major"] = json_of_point(axes.major);
+    (*stroke)["minor"] = json_of_point(axes.minor);
   } else if (kind == StrokeKind::kEllipticArc) {
     const EllipticArcParameters e = elliptic_arc_parameters(control_points(sketch, i));
     if (e.straight) return;
     double shift = 0;
     const EllipseAxes axes = principal_axes(e.p, e.q, &shift);
-    (*stroke)["centre"] = json_of(e.centre);
-    (*stroke)["major"] = json_of(axes.major);
-    (*stroke)["minor"] = json_of(axes.minor);
+    (*stroke)["centre"] = json_of_point(e.centre);
+    (*stroke)["major"] = json_of_point(axes.major);
+    (*stroke)["minor"] = json_of_point(axes.minor);
     (*stroke)["angles"] = {-e.half_angle - shift, e.half_angle - shift};
   }
 }
@@ -61,10 +60,10 @@ Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<in
   if (chain.strokes.size() > 1) {
     const Eigen::Matrix3Xd p = chain_points(sketch, chain);
     for (int k = 1; k + 1 < p.cols(); ++k)
-      out["handles"].push_back(json_of(Eigen::Vector3d(p.col(k))));
+      out["handles"].push_back(json_of_point(Eigen::Vector3d(p.col(k))));
   } else {
     for (int h = 0; h < num_handles(s.kind); ++h)
-      out["handles"].push_back(json_of(Eigen::Vector3d(sketch.handles.col(s.handle + h))));
+      out["handles"].push_back(json_of_point(Eigen::Vector3d(sketch.handles.col(s.handle + h))));
   }
   add_derived(sketch, i, &out);
   out["opacity"] = e.opacity;
@@ -81,75 +80,13 @@ Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<in
   return out;
 }
 
-// One item a line: readable, and a change of one stroke is a change of one line.
-void write_array(std::ostream& out, const char* name, const std::vector<Json>& items) {
-  out << "  \"" << name << "\": [";
-  for (size_t i = 0; i < items.size(); ++i) out << (i ? ",\n    " : "\n    ") << items[i].dump();
-  out << (items.empty() ? "]" : "\n  ]");
-}
-
-// Reads values and says where in the file the unusable one is.
-class Reader {
- public:
-  explicit Reader(const std::string& path) : path_(path) {}
-
-  [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
-    throw InputError(path_, expected, found);
-  }
-  const Json& member(const Json& object, const char* key, const std::string& where) const {
-    if (!object.is_object()) fail("an object as " + where, object.type_name());
-    const auto it = object.find(key);
-    if (it == object.end()) fail("\"" + std::string(key) + "\" in " + where, "no such key");
-    return *it;
-  }
-  const Json& array(const Json& object, const char* key, const std::string& where) const {
-    const Json& a = member(object, key, where);
-    if (!a.is_array()) fail("an array as \"" + std::string(key) + "\" in " + where, a.type_name());
-    return a;
-  }
-  // An array of what a sketch is made of.
-  const Json& parts(const Json& object, const char* key, const std::string& where) const {
-    const Json& a = array(object, key, where);
-    if (a.size() > kMost)
-      fail("at most " + std::to_string(kMost) + " " + key + " in " + where,
-           std::to_string(a.size()));
-    return a;
-  }
-  Eigen::Vector3d point(const Json& j, const std::string& where) const {
-    if (!j.is_array() || j.size() != 3) fail("three numbers as " + where, summary(j));
-    for (const Json& x : j)
-      if (!x.is_number()) fail("three numbers as " + where, summary(j));
-    return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
-  }
-  double number(const Json& object, const char* key, double absent,
-                const std::string& where) const {
-    const auto it = object.find(key);
-    if (it == object.end()) return absent;
-    if (!it->is_number())
-      fail("a number as \"" + std::string(key) + "\" in " + where, summary(*it));
-    return it->get<double>();
-  }
-  int integer(const Json& j, const std::string& what) const {
-    if (!j.is_number_integer() || j.get<double>() < 0 || j.get<double>() > 2e9)
-      fail(what, summary(j));
-    return j.get<int>();
-  }
-  static std::string summary(const Json& j) {
-    const std::string text = j.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return text.size() <= 60 ? text : text.substr(0, 57) + "...";
-  }
-
- private:
-  std::string path_;
-};
-
-void read_stroke(const Reader& reader, const Json& j, const std::string& where, int num_nodes,
+void read_stroke(const JsonReader& reader, const Json& j, const std::string& where, int num_nodes,
                  Sketch* sketch) {
   const Json& name = reader.member(j, "kind", where);
   StrokeKind kind;
   if (!name.is_string() || !parse_kind(name.get<std::string>(), &kind))
     reader.fail("line, arc, circle, ellipse, bezier or elliptic_arc as \"kind\" of " + where,
-                Reader::summary(name));
+                JsonReader::summary(name));
   const Json& nodes = reader.array(j, "nodes", where);
   if (nodes.size() != (is_closed(kind) ? 0u : 2u))
     reader.fail(std::string(is_closed(kind) ? "no" : "two") + " nodes in " + where,
@@ -161,7 +98,7 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
       reader.fail("an index of a node in " + where + " below " + std::to_string(num_nodes),
                   std::to_string(ends[k]));
   }
-  const Json& handles = reader.parts(j, "handles", where);
+  const Json& handles = reader.array(j, "handles", where, kMostParts);
   const bool spans = kind == StrokeKind::kBezier && handles.size() % 3 == 2;
   if (!spans && int(handles.size()) != num_handles(kind))
     reader.fail(std::to_string(num_handles(kind)) + " handles in " + where +
@@ -182,7 +119,7 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
       e.views.push_back(reader.integer(v, "an index of a view in " + where));
   if (j.contains("covariance"))
     for (const Json& c : reader.array(j, "covariance", where)) {
-      if (!c.is_number()) reader.fail("numbers as covariance of " + where, Reader::summary(c));
+      if (!c.is_number()) reader.fail("numbers as covariance of " + where, JsonReader::summary(c));
       e.covariance.push_back(c.get<double>());
     }
   if (j.contains("determined"))
@@ -199,6 +136,22 @@ void read_stroke(const Reader& reader, const Json& j, const std::string& where, 
 
 }  // namespace
 
+void write_sketch_members(std::ostream& out, const Sketch& sketch,
+                          const std::vector<CurveChain>& chains) {
+  const std::vector<bool> inner = inner_joints(sketch, chains);
+  std::vector<Json> nodes, strokes;
+  std::vector<int> node(inner.size(), -1);
+  for (size_t i = 0; i < inner.size(); ++i) {
+    if (inner[i]) continue;
+    node[i] = int(nodes.size());
+    nodes.push_back(json_of_point(Eigen::Vector3d(sketch.nodes.col(i))));
+  }
+  for (const CurveChain& chain : chains) strokes.push_back(json_of(sketch, chain, node));
+  write_json_array(out, "nodes", nodes);
+  out << ",\n";
+  write_json_array(out, "strokes", strokes);
+}
+
 void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::string& extra) {
   out << "{\n  \"format_version\": " << kFormatVersion << ",\n";
   if (!extra.empty()) {
@@ -208,43 +161,21 @@ void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::strin
       if (key != "format_version" && key != "nodes" && key != "strokes")
         out << "  " << Json(key).dump() << ": " << value.dump() << ",\n";
   }
-  const std::vector<CurveChain> chains = curve_chains(sketch);
-  const std::vector<bool> inner = inner_joints(sketch, chains);
-  std::vector<Json> nodes, strokes;
-  std::vector<int> node(inner.size(), -1);
-  for (size_t i = 0; i < inner.size(); ++i) {
-    if (inner[i]) continue;
-    node[i] = int(nodes.size());
-    nodes.push_back(json_of(Eigen::Vector3d(sketch.nodes.col(i))));
-  }
-  for (const CurveChain& chain : chains) strokes.push_back(json_of(sketch, chain, node));
-  write_array(out, "nodes", nodes);
-  out << ",\n";
-  write_array(out, "strokes", strokes);
+  write_sketch_members(out, sketch, curve_chains(sketch));
   out << "\n}\n";
 }
 
-Sketch read_sketch_json(std::istream& in, const std::string& path) {
-  const Reader reader(path);
-  Json j;
-  try {
-    j = parse_json<Json>(in, path);
-  } catch (const Json::exception& e) {
-    reader.fail("a sketch as JSON", e.what());
-  }
-  const Json& version = reader.member(j, "format_version", "the file");
-  if (!version.is_number_integer() || version.get<double>() != kFormatVersion)
-    reader.fail("format_version " + std::to_string(kFormatVersion), Reader::summary(version));
+Sketch sketch_of_members(const nlohmann::ordered_json& j, const JsonReader& reader) {
   Sketch sketch;
-  const Json& nodes = reader.parts(j, "nodes", "the file");
+  const Json& nodes = reader.array(j, "nodes", "the file", kMostParts);
   sketch.nodes.resize(3, nodes.size());
   for (size_t i = 0; i < nodes.size(); ++i)
     sketch.nodes.col(i) = reader.point(nodes[i], "node " + std::to_string(i));
-  const Json& strokes = reader.parts(j, "strokes", "the file");
+  const Json& strokes = reader.array(j, "strokes", "the file", kMostParts);
   for (size_t i = 0; i < strokes.size(); ++i) {
     read_stroke(reader, strokes[i], "stroke " + std::to_string(i), int(nodes.size()), &sketch);
-    if (sketch.strokes.size() > kMost)
-      reader.fail("at most " + std::to_string(kMost) + " pieces of curves", "more");
+    if (sketch.strokes.size() > kMostParts)
+      reader.fail("at most " + std::to_string(kMostParts) + " pieces of curves", "more");
   }
   const std::vector<std::string> complaints = validate(sketch);
   if (!complaints.empty())
@@ -253,6 +184,20 @@ Sketch read_sketch_json(std::istream& in, const std::string& path) {
                                      ? " (and " + std::to_string(complaints.size() - 1) + " more)"
                                      : ""));
   return sketch;
+}
+
+Sketch read_sketch_json(std::istream& in, const std::string& path) {
+  const JsonReader reader(path);
+  Json j;
+  try {
+    j = parse_json<Json>(in, path);
+  } catch (const Json::exception& e) {
+    reader.fail("a sketch as JSON", e.what());
+  }
+  const Json& version = reader.member(j, "format_version", "the file");
+  if (!version.is_number_integer() || version.get<double>() != kFormatVersion)
+    reader.fail("format_version " + std::to_string(kFormatVersion), JsonReader::summary(version));
+  return sketch_of_members(j, reader);
 }
 
 }  // namespace sketchsplat

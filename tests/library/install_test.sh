@@ -40,6 +40,7 @@ grep -qE '^circle of radius 0\.(50|49)' "$folder/circle" || fail "no circle: $(c
 "$build/pipelines/sketchsplat" synthesize box --views 12 --resolution 200 --outputs none --quiet \
   --out "$folder/scene" >/dev/null
 "$folder/examples/from_folder" "$folder/scene" "$folder/box.step" >"$folder/box" 2>"$folder/stages"
+grep -qE '^solid of volume 0\.[0-9]' "$folder/box" || fail "no solid, or no plug-in that knows: $(cat "$folder/box")"
 [ -s "$folder/box.step" ] || fail "no STEP file"
 grep -q '^detect$' "$folder/stages" || fail "no progress"
 grep -qE '^F5 (100|9[0-9])' "$folder/box" || fail "a box is not found: $(cat "$folder/box")"

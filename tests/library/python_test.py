@@ -90,6 +90,15 @@ class Module(unittest.TestCase):
                            check=True, stdout=subprocess.DEVNULL)
             sketch = sketchsplat.reconstruct_folder(folder, preset="fast")
             self.assertGreater(sketchsplat.evaluate(sketch, folder)["F5"], 90)
+            self.assertEqual(sketch.solid.faces, {"plane": 6})
+            self.assertGreater(sketch.solid.volume, 0.1)
+            sketch.solid.write(folder + "/part_solid.step", scale=10, unit="cm")
+            with open(folder + "/part_solid.step", encoding="utf-8") as file:
+                self.assertIn("MANIFOLD_SOLID_BREP('part_solid'", file.read())
+            with self.assertRaises(ValueError):
+                sketch.solid.write(folder + "/part_solid.obj")
+            alone = sketchsplat.reconstruct_folder(folder, preset="fast", expert={"solid": "off"})
+            self.assertIsNone(alone.solid)
             with self.assertRaises(ValueError):
                 sketchsplat.evaluate(sketch, folder, "best")
         with self.assertRaises(RuntimeError):

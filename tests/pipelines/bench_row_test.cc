@@ -45,6 +45,21 @@ TEST(BenchTable, LinesAreEquallyLongAndShowADashForNoNumber) {
   EXPECT_EQ(bench_table({}), "scene  variant\n");
 }
 
+TEST(BenchSolids, AreCountedByVariantWhereThePartIsKnown) {
+  std::vector<BenchRow> rows(5);
+  const char* const kOutcomes[] = {"solid_right", "solid_wrong", "solid_refused", "solid_right"};
+  for (int i = 0; i < 4; ++i) {
+    rows[i].variant = i < 3 ? "fast" : "balanced";
+    for (const char* outcome : {"solid_right", "solid_wrong", "solid_refused"})
+      rows[i].set(outcome, double(std::string(outcome) == kOutcomes[i]));
+  }
+  rows[4].variant = "fast";  // of a mesh
+  EXPECT_EQ(
+      solid_counts(rows),
+      "solids, fast: 1 right, 1 wrong, 1 refused\nsolids, balanced: 1 right, 0 wrong, 0 refused\n");
+  EXPECT_EQ(solid_counts({rows[4]}), "");
+}
+
 TEST(BenchCsv, QuotesNamesAndLeavesOutWhatIsNoNumber) {
   EXPECT_EQ(bench_csv(three_rows()),
             "scene,variant,reason,F5,F1,acc,total\n"

@@ -49,7 +49,8 @@ TEST_F(Chain, WritesEveryFileItPromisesAndNothingElse) {
   }
   EXPECT_THAT(names, testing::UnorderedElementsAre(
                          "sketch.json", "parametric_edges.json", "sketch.obj", "sketch.step",
-                         "solid.step", "edge_points.ply", "report.json", "report.html"));
+                         "solid.step", "solid.json", "surfaces.csv", "dimensions.csv",
+                         "edge_points.ply", "report.json", "report.html"));
   EXPECT_EQ(overlays, OutputOptions().overlays);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/pipelines/program.h"
@@ -111,7 +112,9 @@ class SolidsOfImages : public Solids {
 TEST_F(SolidsOfImages, AreThePartForAnyNumberOfThreads) {
   ASSERT_EQ(reconstruct("one", "--solid require --threads 1"), 0);
   ASSERT_EQ(reconstruct("three", "--threads 3"), 0);
-  EXPECT_EQ(text_of_file(in_folder("one/solid.step")), text_of_file(in_folder("three/solid.step")));
+  for (const char* file : {"solid.step", "solid.json", "surfaces.csv", "dimensions.csv"})
+    EXPECT_TRUE(text_of_file(in_folder("one/") + file) == text_of_file(in_folder("three/") + file))
+        << file;
   const json told = report("one");
   EXPECT_EQ(told["written"], true);
   EXPECT_EQ(told["faces"]["plane"], 6);
@@ -123,6 +126,74 @@ TEST_F(SolidsOfImages, AreThePartForAnyNumberOfThreads) {
   EXPECT_GT(double(solid["iou"]), 0.99);
   EXPECT_EQ(solid["face_f"], 1);
   EXPECT_NEAR(double(solid["volume"]), double(told["volume"]), 1e-6);
+}
+
+TEST_F(SolidsOfImages, HaveTablesInTheUnit) {
+  ASSERT_EQ(reconstruct("result", "--scale 40 --unit cm"), 0);
+  const json told = report("result");
+  ASSERT_EQ(told["surfaces"].size(), 7u);
+  EXPECT_EQ(told["unit"], "cm");
+  std::map<std::string, std::vector<json>> of_kind;
+  for (const json& d : told["dimensions"]) of_kind[d["kind"]].push_back(d);
+  ASSERT_EQ(of_kind["diameter"].size(), 1u);
+  EXPECT_EQ(of_kind["plane distance"].size(), 3u);
+  EXPECT_EQ(of_kind["axis to plane"].size(), 2u);
+  const double radius = told["surfaces"][6]["radius"];
+  EXPECT_NEAR(double(of_kind["diameter"][0]["value"]), 2 * radius, 1e-6);
+  for (const json& d : told["dimensions"]) {
+    EXPECT_GT(double(d["sigma"]), 0) << d;
+    EXPECT_LT(double(d["sigma"]), 0.01 * 40) << d;
+    EXPECT_EQ(d["unit"], "cm");
+  }
+  const std::string surfaces = text_of_file(in_folder("result/surfaces.csv"));
+  EXPECT_EQ(count_lines(surfaces), 8);
+  EXPECT_THAT(surfaces, HasSubstr("\ncylinder_6,6,cylinder,cm,"));
+  EXPECT_EQ(count_lines(text_of_file(in_folder("result/dimensions.csv"))), 7);
+  ASSERT_EQ(reconstruct("result", "--solid off"), 0);
+  for (const char* file : {"surfaces.csv", "dimensions.csv", "solid.json"})
+    EXPECT_FALSE(fs::exists(in_folder("result/") + file)) << file;
+}
+
+TEST_F(SolidsOfImages, AreExportedAgainAtAnotherScale) {
+  ASSERT_EQ(reconstruct("scene", "--scale 40"), 0);  // of the same name: so is the product
+  const auto exported = [&](const std::string& to, const std::string& options) {
+    const Outcome o =
+        run("export '" + in_folder("scene") + "' --solid '" + in_folder(to) + "' " + options);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return text_of_file(in_folder(to));
+  };
+  fs::create_directories(in_folder("again"));
+  EXPECT_TRUE(exported("again/scene.step", "") == text_of_file(in_folder("scene/solid.step")));
+  EXPECT_THAT(exported("other.step", "--scale 2 --unit inch"), HasSubstr("INCH"));
+  exported("again/world.step", "--scale 1 --unit mm");
+  const json same = compared(" --pred '" + in_folder("scene") + "' --gt '" + in_folder("scene") +
+                             "' --solid '" + in_folder("again/world.step") + "'")["solid"];
+  EXPECT_GT(double(same["iou"]), 0.99) << "the truth is in world units";
+  fs::remove(in_folder("scene/solid.json"));
+  const Outcome none =
+      run("export '" + in_folder("scene") + "' --solid '" + in_folder("x.step") + "'");
+  EXPECT_EQ(none.status, kBadInput);
+  EXPECT_EQ(count_lines(none.err), 1);
+}
+
+TEST_F(Solids, OfWhichOnlyFacesAreSureAreAShell) {
+  const std::string scene = in_folder("scene"), result = in_folder("result");
+  ASSERT_EQ(run("synthesize countersunk-plate --views 24 --resolution 320 --outputs none --quiet "
+                "--out '" +
+                scene + "'")
+                .status,
+            0);
+  const std::string reconstruct =
+      "reconstruct '" + scene + "' --overlays 0 --quiet --out '" + result + "'";
+  ASSERT_EQ(run(reconstruct + " --shell").status, 0);
+  const json told = json::parse(text_of_file(result + "/report.json"))["solid"];
+  if (told["written"]) GTEST_SKIP() << "this part closes";
+  EXPECT_EQ(told["shell"]["written"], true);
+  EXPECT_GT(int(told["shell"]["faces_sure"]), 2);
+  EXPECT_LT(int(told["shell"]["faces_sure"]), int(told["shell"]["faces_of_best"]));
+  EXPECT_THAT(text_of_file(result + "/shell.step"), HasSubstr("OPEN_SHELL"));
+  ASSERT_EQ(run(reconstruct).status, 0);
+  EXPECT_FALSE(fs::exists(result + "/shell.step")) << "it was not asked for";
 }
 
 TEST_F(SolidsOfImages, AreNotWrittenUnlessAskedFor) {

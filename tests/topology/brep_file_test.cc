@@ -20,6 +20,7 @@
 #include "datasets/types/errors.h"
 #include "gmock/gmock.h"
 #include "tests/topology/solids.h"
+#include "topology/brep/mesh_solid.h"
 #include "topology/brep/solid_step.h"
 
 namespace sketchsplat {
@@ -117,6 +118,52 @@ TEST(BrepFile, OfTheSameSolidHasTheSameBytes) {
   ASSERT_TRUE(write_solid_step(cone_solid(0), path).valid);
   ASSERT_TRUE(write_solid_step(plate_with_hole(0.2), path).valid);
   EXPECT_EQ(read(path), first);
+}
+
+TEST(BrepFile, NumbersFacesAsTheSolidDoes) {
+  SolidMaker m;
+  m.box({0, 0, 0}, {4, 4, 4});
+  Solid voids = m.solid;  // a cavity, whose faces come first, in a shell of their own
+  SolidMaker inner;
+  inner.solid = Solid();
+  inner.face({SurfaceKind::kSphere, {2, 2, 2}, Eigen::Vector3d::UnitZ(), 1}, true, {});
+  voids.surfaces.insert(voids.surfaces.begin(), inner.solid.surfaces[0]);
+  for (SolidFace& face : voids.faces) ++face.surface;
+  voids.faces.insert(voids.faces.begin() + 3, inner.solid.faces[0]);
+  ASSERT_TRUE(write_solid_step(voids, file_name()).valid);
+  EXPECT_THAT(read(file_name()), HasSubstr("ADVANCED_FACE('sphere_3'"));
+}
+
+TEST(BrepFile, OfAnOpenShellHoldsItsFacesAndNoSolid) {
+  Solid shell = plate_with_hole(0.2);
+  shell.faces.erase(shell.faces.begin());
+  StepSolidOptions options;
+  options.open = true;
+  ASSERT_TRUE(write_solid_step(shell, file_name(), options).valid);
+  const Reread file = reread(file_name());
+  EXPECT_EQ(file.solids, 0);
+  EXPECT_TRUE(file.valid);
+  EXPECT_THAT(file.faces,
+              ::testing::ElementsAre(std::pair(GeomAbs_Plane, 6), std::pair(GeomAbs_Cylinder, 1)));
+  shell.faces.erase(shell.faces.begin(), shell.faces.begin() + 5);  // the hole alone is left
+  shell.edges = keep_strokes(shell.edges, {true, true, false, false, false, false, false, false,
+                                           false, false, false, false, false, false});
+  ASSERT_TRUE(write_solid_step(shell, file_name(), options).valid);
+}
+
+TEST(MeshSolid, HasTheAreasOfTheFacesAndLooksOut) {
+  const Solid solid = plate_with_hole(0.5);
+  const std::vector<FaceMesh> mesh = mesh_solid(solid, 1e-3);
+  ASSERT_EQ(mesh.size(), solid.faces.size());
+  EXPECT_NEAR(mesh[2].area, 2 * 0.5, 1e-9);
+  EXPECT_NEAR(mesh[6].area, M_PI * 0.5 * 0.5, 1e-9);
+  double volume = 0;
+  for (const FaceMesh& face : mesh)
+    for (const auto& [a, b, c] : face.triangles)
+      volume +=
+          face.points[size_t(a)].dot(face.points[size_t(b)].cross(face.points[size_t(c)])) / 6;
+  EXPECT_NEAR(volume, 1 - M_PI / 16 * 0.5, 2e-3);
+  EXPECT_TRUE(mesh_solid(Solid(), 1e-3).empty());
 }
 
 TEST(BrepFile, IsNotThereIfTheSolidIsRefused) {

@@ -2,11 +2,15 @@
 #include "topology/brep/build_solid.h"
 
 #include <BRep_Builder.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
+#include "sketches/curve/curve.h"
 #include "topology/brep/build_face.h"
 
 namespace sketchsplat::brep {
@@ -32,8 +36,8 @@ void check_loop(const Sketch& sketch, const Loop& loop) {
   if (loop.empty()) throw Refused("a loop of it is empty");
 }
 
-// Every stroke bounds two faces, run in opposite directions.
-void check_uses(const Solid& solid) {
+// Every stroke bounds two faces, run in opposite directions; of open shells, perhaps one.
+void check_uses(const Solid& solid, bool open) {
   std::vector<int> forward(solid.edges.size()), backward(solid.edges.size());
   for (const SolidFace& face : solid.faces)
     for (const Loop& loop : face.loops)
@@ -42,6 +46,7 @@ void check_uses(const Solid& solid) {
     const std::string edge =
         "edge " + std::to_string(i) + ", " + (kind_name(solid.edges.strokes[i].kind)) + ": ";
     const int uses = forward[i] + backward[i];
+    if (open && uses == 1) continue;
     if (uses != 2)
       throw Refused(edge + "it bounds " + std::to_string(uses) + (uses == 1 ? " face" : " faces") +
                     ", not two");
@@ -49,7 +54,7 @@ void check_uses(const Solid& solid) {
   }
 }
 
-void check_indices(const Solid& solid) {
+void check_indices(const Solid& solid, bool open) {
   if (solid.faces.empty()) throw Refused("it has no faces");
   for (size_t f = 0; f < solid.faces.size(); ++f) {
     const SolidFace& face = solid.faces[f];
@@ -61,7 +66,7 @@ void check_indices(const Solid& solid) {
       throw Refused(of_face(f, solid.surfaces[face.surface].kind) + why.what());
     }
   }
-  check_uses(solid);
+  check_uses(solid, open);
 }
 
 // Faces that share strokes, in sets.
@@ -86,10 +91,47 @@ std::vector<std::vector<int>> connected(const Solid& solid) {
   return out;
 }
 
+// The faces as shells, in the solid that they bound or, if they are open, as they are.
+TopoDS_Shape assembled(const Solid& solid, const std::vector<TopoDS_Face>& faces, bool open) {
+  const BRep_Builder builder;
+  const std::vector<std::vector<int>> sets = connected(solid);
+  TopoDS_Compound loose;
+  TopoDS_Solid whole;
+  if (open)
+    builder.MakeCompound(loose);
+  else
+    builder.MakeSolid(whole);
+  TopoDS_Shell shell;
+  for (const std::vector<int>& members : sets) {
+    builder.MakeShell(shell);
+    for (const int f : members) builder.Add(shell, faces[f]);
+    shell.Closed(!open);
+    if (open)
+      builder.Add(loose, shell);
+    else
+      builder.Add(whole, shell);
+  }
+  if (!open) return whole;
+  return sets.size() == 1 ? TopoDS_Shape(shell) : TopoDS_Shape(loose);
+}
+
 }  // namespace
 
-BuiltSolid build_solid(const Solid& solid, double extent) {
-  check_indices(solid);
+double extent_of(const Solid& solid) {
+  double extent = largest_extent(solid.edges);
+  for (const SolidFace& face : solid.faces) {
+    if (!face.loops.empty() || face.surface < 0 || face.surface >= int(solid.surfaces.size()))
+      continue;
+    const Surface& s = solid.surfaces[face.surface];
+    extent = std::max(extent, 2 * (s.radius + s.minor_radius));
+  }
+  return extent;
+}
+
+double working_scale(double extent) { return std::exp2(7 - std::ceil(std::log2(extent))); }
+
+BuiltSolid build_solid(const Solid& solid, double extent, bool open) {
+  check_indices(solid, open);
   EdgeTable edges(solid, extent * kNear);
   // Poles and ends of seams are where curves end, up to what these lie beside their surfaces.
   edges.set_near(std::clamp(4 * solid.gap, kNear * extent, kMostNear * extent));
@@ -107,15 +149,7 @@ BuiltSolid build_solid(const Solid& solid, double extent) {
   edges.build();
   BuiltSolid built;
   each([&](size_t f) { built.faces.push_back(build_face(plans[f], edges)); });
-  const BRep_Builder builder;
-  builder.MakeSolid(built.shape);
-  for (const std::vector<int>& members : connected(solid)) {
-    TopoDS_Shell shell;
-    builder.MakeShell(shell);
-    for (const int f : members) builder.Add(shell, built.faces[f]);
-    shell.Closed(true);
-    builder.Add(built.shape, shell);
-  }
+  built.shape = assembled(solid, built.faces, open);
   return built;
 }
 

@@ -78,7 +78,7 @@ std::string orient(BuiltSolid* built) {
 }
 
 std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
-                    const BuiltSolid& built) {
+                    const BuiltSolid& built, bool open) {
   if (!(check.tolerance <= kMostTolerance * extent)) {
     std::ostringstream text;
     text.precision(2);
@@ -87,9 +87,9 @@ std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
   }
   const std::string fault = brep::fault_of(built.shape);
   if (!fault.empty()) return fault;
-  for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More(); it.Next())
+  for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More() && !open; it.Next())
     if (!BRep_Tool::IsClosed(it.Current())) return "its faces do not close";
-  if (!(check.volume > 1e-9 * std::pow(extent, 3))) return "it has no volume";
+  if (!open && !(check.volume > 1e-9 * std::pow(extent, 3))) return "it has no volume";
   return self_intersection(solid, built, check.tolerance, extent);
 }
 
@@ -134,7 +134,16 @@ SolidCheck check_solid(const Solid& solid, double extent, BuiltSolid* built) {
   check.tolerance = tolerance_of(built->shape);
   check.volume = volume_of(built->shape);
   check.area = area_of(built->shape);
-  if (check.why.empty()) check.why = why_not(solid, extent, check, *built);
+  if (check.why.empty()) check.why = why_not(solid, extent, check, *built, /*open=*/false);
+  check.valid = check.why.empty();
+  return check;
+}
+
+SolidCheck check_shell(const Solid& shell, double extent, const BuiltSolid& built) {
+  SolidCheck check;
+  check.tolerance = tolerance_of(built.shape);
+  check.area = area_of(built.shape);
+  check.why = why_not(shell, extent, check, built, /*open=*/true);
   check.valid = check.why.empty();
   return check;
 }

@@ -13,6 +13,9 @@ namespace sketchsplat::brep {
 /// longest side of its box.
 SolidCheck check_solid(const Solid& solid, double extent, BuiltSolid* built);
 
+/// The same of shells that need not close: without a volume, and as they are turned.
+SolidCheck check_shell(const Solid& shell, double extent, const BuiltSolid& built);
+
 /// What BRepCheck_Analyzer finds first, as a clause; empty if the shape is valid.
 std::string fault_of(const TopoDS_Shape& shape);
 

@@ -149,11 +149,15 @@ double MeshedFace::distance(const Vector3d& p, double bound) const {
   return any ? surface_distance(p, foot, uv) : least;
 }
 
-std::vector<MeshedFace> mesh_faces(const TopoDS_Shape& shape, double deflection) {
+void mesh(const TopoDS_Shape& shape, double deflection) {
   constexpr double kAngle = 0.25;  // rad
   BRepTools::Clean(shape);
   BRepMesh_IncrementalMesh(shape, deflection, /*isRelative=*/false, kAngle,
                            /*isInParallel=*/false);
+}
+
+std::vector<MeshedFace> mesh_faces(const TopoDS_Shape& shape, double deflection) {
+  mesh(shape, deflection);
   std::vector<MeshedFace> out;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next())
     out.emplace_back(TopoDS::Face(it.Current()), deflection);

@@ -50,6 +50,9 @@ class MeshedFace {
   Eigen::AlignedBox3d box_;
 };
 
+/// Chords stay within the deflection and a quarter of a radian of the surfaces.
+void mesh(const TopoDS_Shape& shape, double deflection);
+
 /// Meshes a shape and all of its faces.
 std::vector<MeshedFace> mesh_faces(const TopoDS_Shape& shape, double deflection);
 

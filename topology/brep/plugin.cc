@@ -5,6 +5,7 @@ namespace {
 
 const sketchsplat::BrepPlugin kPlugin = {
     sketchsplat::write_solid_step,
+    sketchsplat::mesh_solid,
     sketchsplat::compare_solids,
 };
 

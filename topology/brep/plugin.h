@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "topology/brep/compare.h"
+#include "topology/brep/mesh_solid.h"
 #include "topology/brep/solid_step.h"
 
 namespace sketchsplat {
@@ -14,6 +16,7 @@ namespace sketchsplat {
 struct BrepPlugin {
   SolidCheck (*write_solid_step)(const Solid& solid, const std::string& path,
                                  const StepSolidOptions& options);
+  std::vector<FaceMesh> (*mesh_solid)(const Solid& solid, double deflection);
   SolidComparison (*compare_solids)(const std::string& path, const std::string& true_path);
 };
 

@@ -27,8 +27,7 @@
 #include <StepVisual_PresentationStyleAssignment.hxx>
 #include <StepVisual_StyledItem.hxx>
 #include <TCollection_HAsciiString.hxx>
-#include <TopExp.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <Transfer_FinderProcess.hxx>
 #include <XSControl_TransferWriter.hxx>
@@ -78,19 +77,18 @@ Handle(TCollection_HAsciiString) text_of(const std::string& text) {
 // that is encoded, and numbers its products.
 constexpr char kNameToken[] = "name_of_the_product";
 
-void paint_faces(const TopoDS_Shape& shape, const Handle(XSControl_WorkSession) & session) {
+void paint_faces(const TopoDS_Shape& shape, const std::vector<TopoDS_Shape>& faces,
+                 const Handle(XSControl_WorkSession) & session) {
   STEPConstruct_Styles styles(session);
   STEPConstruct_DataMapOfAsciiStringTransient predefined;
   STEPConstruct_DataMapOfPointTransient colours;
   const Handle(Transfer_FinderProcess) process = session->TransferWriter()->FinderProcess();
-  TopTools_IndexedMapOfShape faces;
-  TopExp::MapShapes(shape, TopAbs_FACE, faces);
-  for (int f = 1; f <= faces.Extent(); ++f) {
-    const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(process, faces(f));
+  for (size_t f = 0; f < faces.size(); ++f) {
+    const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(process, faces[f]);
     if (item.IsNull()) continue;
     const Paint paint =
-        paint_of(BRepAdaptor_Surface(TopoDS::Face(faces(f)), /*Restriction=*/false).GetType());
-    item->SetName(text_of(std::string(paint.name) + "_" + std::to_string(f - 1)));
+        paint_of(BRepAdaptor_Surface(TopoDS::Face(faces[f]), /*Restriction=*/false).GetType());
+    item->SetName(text_of(std::string(paint.name) + "_" + std::to_string(f)));
     const Quantity_Color colour(paint.red, paint.green, paint.blue, Quantity_TOC_sRGB);
     const Handle(StepVisual_Colour) step_colour = styles.EncodeColor(colour, predefined, colours);
     styles.AddStyle(item, styles.MakeColorPSA(item, step_colour, nullptr, nullptr, 0), nullptr);
@@ -172,7 +170,7 @@ void write_text(const std::string& path, const std::string& text) {
 }  // namespace
 
 void write_step_file(const TopoDS_Shape& shape, const std::string& name, LengthUnit unit,
-                     const std::string& path) {
+                     const std::string& path, std::vector<TopoDS_Shape> faces) {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   STEPControl_Controller::Init();  // defines what is set here, and writers look at when made
   set_statics(unit);
@@ -180,7 +178,10 @@ void write_step_file(const TopoDS_Shape& shape, const std::string& name, LengthU
   writer.SetTolerance(uncertainty_of(shape));
   if (writer.Transfer(shape, STEPControl_AsIs) != IFSelect_RetDone)
     throw OutputError(path, "a shape that STEP cannot hold");
-  paint_faces(shape, writer.WS());
+  if (faces.empty())
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next())
+      faces.push_back(it.Current());
+  paint_faces(shape, faces, writer.WS());
   set_names(writer.Model());
   set_header(writer.Model());
   write_text(path, text_of(writer.Model(), name));

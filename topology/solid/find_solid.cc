@@ -13,6 +13,7 @@
 #include "topology/solid/adjust.h"
 #include "topology/solid/assemble.h"
 #include "topology/solid/choose.h"
+#include "topology/solid/common_faces.h"
 #include "topology/solid/complete.h"
 #include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
@@ -148,6 +149,32 @@ CellChoice price(const Completed& all, double tolerance, const SolidOptions& opt
   return choice;
 }
 
+// Is there a stroke on the surface that no face explains? What it does there nobody knows.
+bool holds_left(const Completed& all, const std::vector<bool>& left, const Surface& s) {
+  const auto same = [&](const Surface& t) {
+    return t.kind == s.kind && t.origin == s.origin && t.axis == s.axis && t.radius == s.radius &&
+           t.slope == s.slope && t.minor_radius == s.minor_radius && t.profile == s.profile;
+  };
+  for (const SurfaceStrokes& of : all.surfaces)
+    if (same(of.surface))
+      for (const int stroke : of.strokes)
+        if (stroke < int(left.size()) && left[stroke]) return true;
+  return false;
+}
+
+// Faces of the best choice that the second-best one has, too, and that leave no stroke open.
+std::optional<Solid> sure_faces(const Solid& best, const Solid& second, const Completed& all,
+                                const std::vector<bool>& left) {
+  const Solid common = common_faces(best, second);
+  std::vector<bool> explained;
+  for (const SolidFace& face : common.faces)
+    explained.push_back(!holds_left(all, left, common.surfaces[face.surface]));
+  Solid shell = keep_faces(common, explained);
+  if (shell.faces.empty()) return std::nullopt;
+  adjust(&shell);
+  return shell;
+}
+
 // One search: with edges that surfaces imply, or with copies of loops and strokes seen twice, too.
 class Search {
  public:
@@ -181,16 +208,31 @@ class Search {
     note_left(best, &out);
     out.rays = int(evidence_.rays.size());
     out.contradicted = contradicted(weighed, best.cell);
+    Solid solid, other;
+    if (!boundary(choice, best, &solid, &out.why)) return out;
+    out.faces = int(solid.faces.size());
+    const ChosenCells second = choose_cells(choice, {best}, options_.nodes);
+    out.margin = second.price - best.price;
+    out.why = objection(out);
+    std::string none;
+    if (out.why.empty())
+      out.solid = std::move(solid);
+    else if (!contradicts(out) && boundary(choice, second, &other, &none))
+      out.shell = sure_faces(solid, other, all_, left_);
+    return out;
+  }
+
+  bool boundary(const CellChoice& choice, const ChosenCells& chosen, Solid* solid,
+                std::string* why) const {
     std::vector<bool> inferred;
     for (const EdgeOrigin origin : all_.origin) inferred.push_back(origin != EdgeOrigin::kSeen);
-    Solid solid;
-    if (!assemble(all_.sketch, inferred, all_.polylines, all_.surfaces, choice.cells, best, &solid,
-                  &out.why))
-      return out;
-    out.margin = choose_cells(choice, {best}, options_.nodes).price - best.price;
-    out.why = objection(out);
-    if (out.why.empty()) out.solid = std::move(solid);
-    return out;
+    return assemble(all_.sketch, inferred, all_.polylines, all_.surfaces, choice.cells, chosen,
+                    solid, why);
+  }
+
+  // More masks than a few that are ragged.
+  bool contradicts(const SolidSearch& found) const {
+    return found.contradicted > options_.contradicted * found.rays;
   }
 
   void note_left(const ChosenCells& best, SolidSearch* out) {
@@ -207,7 +249,7 @@ class Search {
     if (!found.doubtful.empty())
       return std::to_string(found.doubtful.size()) + " of " + std::to_string(sketch_.size()) +
              " curves are no edge of the faces that close";
-    if (found.contradicted > options_.contradicted * found.rays)
+    if (contradicts(found))
       return "masks show otherwise along " + std::to_string(found.contradicted) + " of " +
              std::to_string(found.rays) + " lines of sight";
     if (found.margin < options_.margin)

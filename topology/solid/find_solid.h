@@ -28,7 +28,11 @@ struct SolidOptions {
 
 struct SolidSearch {
   std::optional<Solid> solid;
-  std::string why;            ///< if there is none: a clause
+  std::string why;  ///< if there is none: a clause
+  /// If there is none, and no mask says otherwise: the faces that the second-best choice has, too,
+  /// but those on surfaces that hold doubtful strokes. They need not close.
+  std::optional<Solid> shell;
+  int faces = 0;              ///< of the best choice
   std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending
   int twice = 0;              ///< strokes that are other edges of the choice seen twice
   double margin = 0;          ///< [nat] by which the second-best choice is worse
