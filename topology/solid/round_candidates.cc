@@ -34,6 +34,7 @@ class Finder {
         tolerance_(tolerance),
         extent_(largest_extent(sketch)),
         contours_(contours, tolerance),
+        any_contours_(!contours.empty()),
         least_(std::max(kLeast, int(kLeastShare * double(contours.size())))) {
     for (int s = 0; s < sketch.size(); ++s) {
       const StrokeKind kind = sketch.strokes[s].kind;
@@ -180,8 +181,8 @@ class Finder {
     }
   }
 
-  // A hollow shows no contour: it is one of the choices, and the better one about a centre that is
-  // known.
+  // A hollow shows no contour: it is taken about a centre that is known. Between other rims cones
+  // are so much more common that balls are no choice, unless there are no contours at all.
   void add_hollows() {
     const std::vector<SurfaceStrokes> seen = found_.surfaces;
     for (const RoundPatch& p : hollows_) {
@@ -191,7 +192,7 @@ class Finder {
         return s.surface.kind == SurfaceKind::kSphere &&
                (s.surface.origin - p.surface.origin).norm() <= 2 * tolerance_;
       });
-      add(p, false, concentric ? bonus() : -kBallPrice);
+      if (concentric || !any_contours_) add(p, false, concentric ? bonus() : -kBallPrice);
     }
   }
   // A place along a line that is known anyway, among all along the part.
@@ -256,6 +257,7 @@ class Finder {
   const std::vector<Matrix3Xd>& polylines_;
   double tolerance_, extent_;
   Contours contours_;  // that nothing explains yet
+  bool any_contours_;
   int least_;
   std::vector<Rim> rims_;
   std::vector<std::vector<int>> strokes_;  // of each rim
