@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Which built-in parts become solids: makes each (default views), reconstructs and evaluates it.
+"""Which parts become solids: makes each (default views), reconstructs and evaluates it.
 
-    solid_table.py BINARY --out DIR [--seeds 1] [--parts box flange ...] [--threads N]
+    solid_table.py BINARY --out DIR [--seeds 1] [--parts box bracket.step ...] [--threads N]
+
+Parts are built-in ones (without --parts all of them) or STEP files.
 
 Prints a Markdown table: right (IoU at least 0.99), wrong, or refused and why. Scenes that are in
 DIR already are used again.
@@ -25,7 +27,8 @@ def part_names(binary):
 
 
 def outcome(binary, part, seed, folder, threads):
-    scene, result = f"{folder}/scenes/{part}-{seed}", f"{folder}/results/{part}-{seed}"
+    name = os.path.splitext(os.path.basename(part))[0] + f"-{seed}"
+    scene, result = f"{folder}/scenes/{name}", f"{folder}/results/{name}"
     if not os.path.exists(f"{scene}/meta_data.json"):
         made = run([binary, "synthesize", part, "--seed", str(seed), "--out", scene, "--quiet"])
         if made.returncode:
@@ -64,7 +67,7 @@ def main():
             faces = f"{100 * row['face_f']:.0f}" if "iou" in row else ""
             far = f"{row['largest_distance']:.4f}" if "iou" in row else ""
             took = f"{row['seconds']:.1f}, {row['solid_seconds']:.2f}" if "seconds" in row else ""
-            cells = [part, row["verdict"], iou, faces, far, took, row["why"]]
+            cells = [os.path.basename(part), row["verdict"], iou, faces, far, took, row["why"]]
             print("| " + " | ".join(cells) + " |", flush=True)
     print("\n" + ", ".join(f"{n} {verdict}" for verdict, n in sorted(counts.items())))
     return 0
