@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "datasets/types/median.h"
 #include "edges/image/chain.h"
@@ -61,6 +62,17 @@ Composite composite(const Picture& picture, const DetectOptions& options) {
       c.inside(v, u) = a >= 1.f;
     }
   return c;
+}
+
+std::shared_ptr<const GreyPart> grey_part(const Composite& c) {
+  GreyPart part;
+  part.x0 = c.x0, part.y0 = c.y0;
+  part.value = Image<uint16_t>(c.value.cols, c.value.rows);
+  for (int y = 0; y < c.value.rows; ++y)
+    for (int x = 0; x < c.value.cols; ++x)
+      part.value.at(x, y) =
+          uint16_t(std::clamp(c.value(y, x) * GreyPart::kOne + 0.5f, 0.f, 65535.f));
+  return std::make_shared<const GreyPart>(std::move(part));
 }
 
 float measure_noise(const Composite& c) {
@@ -143,6 +155,7 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   const Composite c = composite(picture, options);
   if (c.value.rows < 3 || c.value.cols < 3) return map;
   map.noise = measure_noise(c);
+  map.grey = grey_part(c);
   const Gradient g = gradient_of(c.value, options.sigma_px);
   // White noise of variance 1 has gradient variance 1 / (8 pi sigma^4) by component.
   const double unit = 1.0 / (std::sqrt(8 * M_PI) * options.sigma_px * options.sigma_px);

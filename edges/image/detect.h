@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "datasets/types/image.h"
@@ -19,6 +20,14 @@ struct Edgel {
   bool outline = false;  ///< the object's mask ends here
 };
 
+/// What edgels were looked for in: the part of a picture that can hold any, as one channel. Where
+/// alpha is the mask, alpha * (grey + pedestal), see DetectOptions.
+struct GreyPart {
+  static constexpr float kOne = 40000;  ///< stands for the grey value 1
+  Image<uint16_t> value;
+  int x0 = 0, y0 = 0;  ///< [px] of its top-left pixel in the picture
+};
+
 /// The edgels of one view, chained along the edges, with a look-up by pixel.
 struct EdgelMap {
   int width = 0, height = 0;  ///< of the image [px]
@@ -30,6 +39,8 @@ struct EdgelMap {
   float noise = 0;            ///< measured noise of the image, grey values in [0, 1]
   Image<uint8_t> mask;        ///< 1 on the object, 0 elsewhere, in pixels of the image, never
                               ///< undistorted; empty if the image has no alpha
+  /// In pixels of the image, never undistorted; null unless edgels are those of a picture.
+  std::shared_ptr<const GreyPart> grey;
 
   // Look-up window: the bounding box of the edgels plus the reach.
   int x0 = 0, y0 = 0, window_width = 0, window_height = 0;

@@ -55,6 +55,7 @@ EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain, doubl
   out.noise = found.noise;
   append_runs(found, keep, min_chain, &out);
   out.mask = std::move(found.mask);
+  out.grey = std::move(found.grey);
   build_lookup(&out, reach_px);
   return out;
 }

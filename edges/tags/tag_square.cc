@@ -327,6 +327,7 @@ EdgelMap without_tags(const EdgelMap& map, const View& view, const std::vector<T
   out.width = map.width, out.height = map.height;
   out.noise = map.noise;
   out.mask = map.mask;
+  out.grey = map.grey;
   append_runs(map, keep, kMinChain, &out);
   build_lookup(&out, kLookupPx);
   return out;

@@ -29,6 +29,7 @@ EdgelMap kept(const EdgelMap& map, const std::vector<char>& keep) {
   out.width = map.width, out.height = map.height;
   out.noise = map.noise;
   out.mask = map.mask;
+  out.grey = map.grey;
   append_runs(map, keep, kMinChain, &out);
   build_lookup(&out, kLookupPx);
   return out;

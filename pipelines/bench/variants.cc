@@ -23,7 +23,8 @@ std::vector<BenchVariant> ablation_variants() {
                                             no_conics = {"conics", "false"},
                                             no_rewrite = {"rewrite", "false"},
                                             no_closing = {"close", "false"},
-                                            no_second = {"second-look", "false"};
+                                            no_second = {"second-look", "false"},
+                                            no_missing = {"missing", "false"};
   return {
       {"lift and fit only", {no_early, no_final, no_rounds}},
       {"+ raster rounds", {no_early, no_final, no_topology, no_visibility}},
@@ -41,6 +42,7 @@ std::vector<BenchVariant> ablation_variants() {
       {"all but rewriting", {no_rewrite}},
       {"all but closing", {no_closing}},
       {"all but the second look", {no_second}},
+      {"all but what is missing", {no_missing}},
   };
 }
 

@@ -282,6 +282,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("early-polish", &o->early_polish,
          "Least squares on the edgels in the fit and between the rounds, too");
   f->add("second-look", &o->second_look, "Look again at the edgels that no stroke explains");
+  f->add("missing", &o->missing.on,
+         "Look in the pictures for edges that the others lead to expect");
   f->add("final-polish", &o->final_polish, "End with least squares on the edgels");
   f->add("close", &o->close.on, "Close gaps, loose ends and circles at last");
   f->add("regularize", &o->regularize.on,

@@ -14,6 +14,7 @@
 #include "pipelines/adjust/regularize.h"
 #include "pipelines/base/deadline.h"
 #include "pipelines/base/fields.h"
+#include "pipelines/candidates/add_missing.h"
 #include "pipelines/detectors/detectors.h"
 #include "pipelines/join/close_graph.h"
 #include "pipelines/join/rechain.h"
@@ -57,6 +58,7 @@ struct ReconstructOptions : DetectionOptions {
   PolishOptions polish;
   SpliceOptions splice;
   RechainOptions rechain;
+  MissingOptions missing;
   CloseOptions close;
   RegularizeOptions regularize;
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes

@@ -301,14 +301,35 @@ int drop_unsure(const StrokeObservation& observation, const EdgeWorld& world, do
   return before - sketch->size();
 }
 
+// The sketch with edges that it leads to expect where the pictures show them. Nothing without
+// pictures: other detectors' edgels are of something else.
+Sketch with_missing(const Sketch& sketch, const EdgeWorld& world,
+                    const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  const bool pictures = std::any_of(world.maps.begin(), world.maps.end(),
+                                    [](const EdgelMap& m) { return m.grey != nullptr; });
+  if (!options.missing.on || !pictures || options.deadline.passed()) return sketch;
+  Stage stage("missing", 0, report, progress);
+  const MissingEdges missing = add_missing(sketch, world, options.missing);
+  const size_t added = missing.nats.size();
+  report->counts.push_back({"candidates", double(missing.candidates)});
+  report->counts.push_back({"strokes_missing", double(added)});
+  stage.result(std::to_string(added) + " of " + std::to_string(missing.candidates) +
+               " candidates stand");
+  if (added == 0) return sketch;
+  CloseOptions close = options.close;
+  close.round.least_turn = 2;  // nobody has seen more of them than what was added
+  return close_graph(missing.sketch, world, prices(options), close).sketch;
+}
+
 }  // namespace
 
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress) {
+  Closed closed = options.close.on && !options.deadline.passed()
+                      ? close_graph(sketch, world, prices(options), options.close)
+                      : Closed{sketch};
+  closed.sketch = with_missing(closed.sketch, world, options, report, progress);
   Stage stage("polish", 0, report, progress);
-  const Closed closed = options.close.on && !options.deadline.passed()
-                            ? close_graph(sketch, world, prices(options), options.close)
-                            : Closed{sketch};
   Sketch out = closed.sketch;
   Regularized regular;
   if (options.final_polish) {

@@ -55,7 +55,9 @@ Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
                   const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
                   RunReport* report, Progress* progress);
 
-/// Last polish on the edgels, last choice, and the evidence that is written with the sketch.
+/// Gaps and loose ends closed, edges added that the others lead to expect and that the pictures
+/// show (add_missing.h), last polish on the edgels, last choice, and the evidence that is written
+/// with the sketch.
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress);
 

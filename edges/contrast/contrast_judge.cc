@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "edges/contrast/contrast_judge.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sketches/curve/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr int kScales = 5;      // 1, 2, 4, 8, 16
+constexpr int kRates = 10;      // shares of the views that show an edge, over which is integrated
+constexpr double kAsidePx = 5;  // [px] of copies in space
+
+std::vector<int> pieces_of(int points, double piece_px) {
+  const int pieces = std::max(1, int(std::lround(points / piece_px)));
+  std::vector<int> first;
+  for (int p = 0; p <= pieces; ++p) first.push_back(int(int64_t(points) * p / pieces));
+  return first;
+}
+
+// Sums of a likelihood ratio over views: those that must show the edge, and others.
+class Pool {
+ public:
+  explicit Pool(const ContrastOptions& options) : options_(options) {}
+
+  void add(double ratio, bool sure) {
+    if (sure) {
+      sum_ += std::log(1 - options_.sure_rate + options_.sure_rate * ratio);
+      return;
+    }
+    for (int k = 0; k < kRates; ++k) {
+      const double rate = (k + 0.5) / kRates;
+      by_rate_[k] += std::log(1 - rate + rate * ratio);
+    }
+  }
+  double nats() const {
+    const double most = *std::max_element(by_rate_.begin(), by_rate_.end());
+    double mean = 0;
+    for (const double s : by_rate_) mean += std::exp(s - most) / kRates;
+    return sum_ + most + std::log(mean);
+  }
+
+ private:
+  const ContrastOptions& options_;
+  double sum_ = 0;
+  std::array<double, kRates> by_rate_ = {};
+};
+
+}  // namespace
+
+double contrast_ratio(double z, double freedom) {
+  const auto density = [&](double t) {
+    return std::pow(1 + t * t / freedom, -0.5 * (freedom + 1));
+  };
+  double edge = 0;
+  for (int k = 0; k < kScales; ++k) edge += std::ldexp(density(std::ldexp(z, -k)), -k) / kScales;
+  return std::log(edge / density(z));
+}
+
+ContrastJudge::ContrastJudge(const EdgeWorld& world, const CurvePoints& strokes,
+                             const std::vector<std::vector<char>>& explained,
+                             const ContrastOptions& options)
+    : world_(world), options_(options), known_(known_edges(world, strokes, explained)) {}
+
+ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every) const {
+  const std::vector<int> first = pieces_of(int(curve.position.cols()), options_.piece_px);
+  const int pieces = int(first.size()) - 1;
+  Pool whole(options_);
+  ContrastEvidence out;
+  out.piece_nats.assign(pieces, 0);
+  // What lies along a candidate by accident lies along all of its pieces.
+  const auto doubted = [&](double log_ratio) {
+    return 1 / (options_.accident + (1 - options_.accident) * std::exp(-log_ratio));
+  };
+  for (int v = 0; v < int(world_.views.size()); ++v) {
+    const std::vector<ContrastReading> readings =
+        read_contrasts(world_, v, curve, first, known_, every);
+    const Eigen::Vector3d camera = world_.views[v].center_in_world();
+    double sum = 0;
+    int tell = 0, sure = 0;
+    std::vector<double> each(pieces);
+    for (int p = 0; p < pieces; ++p) {
+      if (!readings[p].tells) continue;
+      const Eigen::Vector3d middle = curve.position.col((first[p] + first[p + 1]) / 2);
+      const bool seen = world_.hull.surely_visible(middle, camera);
+      const double ratio = std::exp(contrast_ratio(readings[p].z, readings[p].freedom));
+      const double shown = std::log(1 - options_.piece_rate + options_.piece_rate * ratio);
+      sum += shown, each[p] = std::log(doubted(shown));
+      ++tell, sure += seen;
+    }
+    if (tell == 0) continue;
+    const ContrastReading& all = readings[pieces];
+    if (all.tells && pieces > 1)
+      sum = std::log(0.5 * std::exp(sum) + 0.5 * std::exp(contrast_ratio(all.z, all.freedom)));
+    whole.add(doubted(sum), 2 * sure > tell);
+    if (!(sum > 0)) continue;
+    ++out.views;
+    for (int p = 0; p < pieces; ++p) out.piece_nats[p] += each[p];
+  }
+  out.nats = whole.nats();
+  return out;
+}
+
+void ContrastJudge::take(const CurvePoints& curve) {
+  const std::vector<int> first = pieces_of(int(curve.position.cols()), options_.piece_px);
+  for (int v = 0; v < int(world_.views.size()); ++v) {
+    double sum = 0;
+    for (const ContrastReading& r : read_contrasts(world_, v, curve, first, known_, 1))
+      sum += r.tells ? contrast_ratio(r.z, r.freedom) : 0;
+    if (sum > 0) add_known(world_, v, curve, &known_);
+  }
+}
+
+double ContrastJudge::beside(const CurvePoints& curve) const {
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();
+  for (int i = 0; i < curve.tangent.cols(); ++i) {
+    const Eigen::Vector3d t = curve.tangent.col(i);
+    along += along.dot(t) < 0 ? Eigen::Vector3d(-t) : t;
+  }
+  Eigen::Vector3d x, y;
+  frame_of<double>(along.norm() > 0 ? along.normalized() : Eigen::Vector3d::UnitZ(), &x, &y);
+  double most = -INFINITY;
+  for (const Eigen::Vector3d& way : {x, y, Eigen::Vector3d(-x), Eigen::Vector3d(-y)}) {
+    CurvePoints copy = curve;
+    copy.position.colwise() += kAsidePx * world_.footprint * way;
+    most = std::max(most, judge(copy).nats);
+  }
+  return most;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "edges/contrast/contrast_judge.h"
+#include "pipelines/candidates/known_curves.h"
+#include "sketches/graph/sketch.h"
+
+namespace sketchsplat {
+
+struct MissingOptions {
+  bool on = true;
+  double false_strokes = 0.05;  ///< per scene, of all candidates together
+  ContrastOptions contrast;
+};
+
+struct MissingEdges {
+  Sketch sketch;             ///< with the strokes that were added, after the others
+  std::vector<double> nats;  ///< of each that was added
+  int candidates = 0;        ///< that were judged
+};
+
+/// Adds the edges that the rest of the sketch leads to expect and that the pictures show. A
+/// candidate is added if its likelihood ratio outweighs the number of candidates over the false
+/// strokes that are tolerated, if its pieces are shown, not a part of it alone, and if copies of it
+/// that are moved aside say less: best first, and each takes what it explains from the others.
+MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
+                         const MissingOptions& options);
+
+}  // namespace sketchsplat

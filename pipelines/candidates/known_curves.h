@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "datasets/neighbours/kd_tree.h"
+#include "edges/views/match.h"
+#include "sketches/graph/sketch.h"
+
+namespace sketchsplat {
+
+/// A curve that may be an edge, with control points of its own.
+struct Candidate {
+  StrokeKind kind = StrokeKind::kLine;
+  ControlPoints curve;
+};
+
+/// Points along a candidate, at most `spacing` (world units) apart, at least two.
+CurvePoints candidate_points(const Candidate& candidate, double spacing);
+
+/// The places where strokes run.
+class KnownCurves {
+ public:
+  /// `spacing`, `reach`: world units; the spacing is less than the reach.
+  KnownCurves(const Sketch& sketch, double spacing, double reach);
+  /// Share of the points that lie within reach of a stroke.
+  double share(const CurvePoints& curve) const;
+
+ private:
+  double reach_;
+  KdTree tree_;
+};
+
+}  // namespace sketchsplat

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/candidates/level_copies.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sketches/curve/curve.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSameDeg = 1.5;     // directions that are one
+constexpr double kCornerSine = 0.2;  // lines that meet at less tell no plane
+constexpr int kFewest = 2;           // strokes or corners of a direction
+constexpr int kMostDirections = 12;
+constexpr double kMostFacets = 6;  // points along a stroke by which it is known to lie in a level
+
+struct Direction {
+  Vector3d sum;
+  int count;
+};
+
+// Normal of the plane of a bent stroke; zero if it has none.
+Vector3d normal_of(const Sketch& s, int stroke) {
+  const StrokeKind kind = s.strokes[stroke].kind;
+  const ControlPoints c = control_points(s, stroke);
+  Vector3d n = Vector3d::Zero();
+  if (kind == StrokeKind::kCircle) n = c.p[1];
+  if (kind == StrokeKind::kEllipse) n = c.p[1].cross(c.p[2]);
+  if (kind == StrokeKind::kArc) n = (c.p[1] - c.p[0]).cross(c.p[2] - c.p[0]);
+  if (kind == StrokeKind::kEllipticArc) n = (c.p[1] - c.p[0]).cross(c.p[3] - c.p[0]);
+  return n.norm() > 0 ? Vector3d(n.normalized()) : n;
+}
+
+void count_direction(const Vector3d& n, std::vector<Direction>* all) {
+  const double same = std::cos(kSameDeg * M_PI / 180);
+  for (Direction& d : *all) {
+    const double c = n.dot(d.sum.normalized());
+    if (std::abs(c) < same) continue;
+    d.sum += c < 0 ? Vector3d(-n) : n;
+    ++d.count;
+    return;
+  }
+  all->push_back({n, 1});
+}
+
+std::vector<Direction> directions(const Sketch& s) {
+  std::vector<Direction> all;
+  for (int i = 0; i < s.size(); ++i) {
+    const Vector3d n = normal_of(s, i);
+    if (n.norm() > 0) count_direction(n, &all);
+  }
+  std::vector<std::vector<Vector3d>> ways(s.nodes.cols());  // of the lines at every node
+  for (const Stroke& stroke : s.strokes) {
+    if (stroke.kind != StrokeKind::kLine) continue;
+    const Vector3d way = (s.nodes.col(stroke.end) - s.nodes.col(stroke.begin)).normalized();
+    ways[stroke.begin].push_back(way);
+    ways[stroke.end].push_back(way);
+  }
+  for (const std::vector<Vector3d>& at : ways)
+    for (size_t i = 0; i < at.size(); ++i)
+      for (size_t k = i + 1; k < at.size(); ++k) {
+        const Vector3d n = at[i].cross(at[k]);
+        if (n.norm() > kCornerSine) count_direction(n.normalized(), &all);
+      }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Direction& a, const Direction& b) { return a.count > b.count; });
+  return all;
+}
+
+// Does a stroke lie in a plane across the direction, and how high?
+bool lies_level(const Sketch& s, int stroke, const Vector3d& normal, double tolerance,
+                double* height) {
+  double low = INFINITY, high = -INFINITY;
+  for (int k = 0; k < kMostFacets; ++k) {
+    Vector3d p, d;
+    evaluate_stroke(s, stroke, k / (kMostFacets - 1), &p, &d);
+    low = std::min(low, p.dot(normal)), high = std::max(high, p.dot(normal));
+  }
+  *height = 0.5 * (low + high);
+  return high - low <= 2 * tolerance;
+}
+
+Levels levels_across(const Sketch& s, const Vector3d& normal, double tolerance) {
+  std::vector<std::pair<double, int>> level;
+  for (int i = 0; i < s.size(); ++i) {
+    double height;
+    if (lies_level(s, i, normal, tolerance, &height)) level.push_back({height, i});
+  }
+  std::sort(level.begin(), level.end());
+  Levels out{normal, {}, {}};
+  for (size_t begin = 0, end; begin < level.size(); begin = end) {
+    double sum = 0;
+    for (end = begin; end < level.size() &&
+                      (end == begin || level[end].first - level[end - 1].first <= 2 * tolerance);
+         ++end)
+      sum += level[end].first;
+    out.height.push_back(sum / double(end - begin));
+    out.strokes.emplace_back();
+    for (size_t k = begin; k < end; ++k) out.strokes.back().push_back(level[k].second);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Levels> find_levels(const Sketch& sketch, double tolerance) {
+  std::vector<Levels> out;
+  for (const Direction& d : directions(sketch)) {
+    if (d.count < kFewest || int(out.size()) == kMostDirections) break;
+    out.push_back(levels_across(sketch, d.sum.normalized(), tolerance));
+  }
+  return out;
+}
+
+Candidate moved(const Candidate& candidate, const Vector3d& by) {
+  Candidate out = candidate;
+  // Axes of closed curves are vectors, not places.
+  const int places = is_closed(candidate.kind) ? 1 : candidate.curve.count;
+  for (int k = 0; k < places; ++k) out.curve.p[k] += by;
+  return out;
+}
+
+std::vector<Candidate> level_copies(const Sketch& sketch, const std::vector<Levels>& levels) {
+  std::vector<Candidate> out;
+  for (const Levels& l : levels)
+    for (size_t from = 0; from < l.height.size(); ++from)
+      for (const int stroke : l.strokes[from])
+        for (size_t to = 0; to < l.height.size(); ++to)
+          if (to != from)
+            out.push_back(moved({sketch.strokes[stroke].kind, control_points(sketch, stroke)},
+                                (l.height[to] - l.height[from]) * l.normal));
+  return out;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "pipelines/candidates/known_curves.h"
+#include "sketches/graph/sketch.h"
+
+namespace sketchsplat {
+
+/// Planes across one direction in which strokes lie: floors, faces, steps of a part.
+struct Levels {
+  Eigen::Vector3d normal;                 ///< unit
+  std::vector<double> height;             ///< ascending, along the normal, world units
+  std::vector<std::vector<int>> strokes;  ///< per level: those that lie in it
+};
+
+/// Directions that at least two planar strokes or corners have in common, those of most first, at
+/// most twelve, each with its levels. `tolerance`: distance of a stroke from its level, world
+/// units.
+std::vector<Levels> find_levels(const Sketch& sketch, double tolerance);
+
+/// The curve moved along a vector.
+Candidate moved(const Candidate& candidate, const Eigen::Vector3d& by);
+
+/// What is in one level, in all other ones: the other rim of a hole, the floor of a pocket whose
+/// depth others share, the far side of a plate.
+std::vector<Candidate> level_copies(const Sketch& sketch, const std::vector<Levels>& levels);
+
+}  // namespace sketchsplat

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "pipelines/candidates/add_missing.h"
+#include "pipelines/candidates/level_copies.h"
+#include "pipelines/candidates/pattern_copies.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTolerance = 0.01;
+
+void add_circle(const Vector3d& centre, double radius, Sketch* s) {
+  s->add_stroke(StrokeKind::kCircle, -1, -1, {centre, radius * Vector3d::UnitZ()});
+}
+
+void add_square(double height, Sketch* s) {
+  std::vector<int> n;
+  for (int k = 0; k < 4; ++k)
+    n.push_back(s->add_node({k == 1 || k == 2 ? 1.0 : 0.0, k > 1 ? 1.0 : 0.0, height}));
+  for (int k = 0; k < 4; ++k) s->add_stroke(StrokeKind::kLine, n[k], n[(k + 1) % 4], {});
+}
+
+// A plate of height 0.2 with a hole of which one rim is known.
+Sketch plate() {
+  Sketch s;
+  add_square(0, &s);
+  add_square(0.2, &s);
+  add_circle({0.2, 0.3, 0.2}, 0.1, &s);
+  return s;
+}
+
+bool has_circle(const std::vector<Candidate>& candidates, const Vector3d& centre, double radius) {
+  for (const Candidate& c : candidates)
+    if (c.kind == StrokeKind::kCircle && (c.curve.p[0] - centre).norm() < 1e-9 &&
+        std::abs(c.curve.p[1].norm() - radius) < 1e-9)
+      return true;
+  return false;
+}
+
+TEST(Candidates, TheOtherRimOfAHoleLiesInTheOtherLevelOfThePlate) {
+  const Sketch s = plate();
+  const std::vector<Levels> levels = find_levels(s, kTolerance);
+  ASSERT_FALSE(levels.empty());
+  EXPECT_NEAR(std::abs(levels[0].normal.z()), 1, 1e-9);
+  EXPECT_EQ(levels[0].height.size(), 2);
+  EXPECT_TRUE(has_circle(level_copies(s, levels), {0.2, 0.3, 0}, 0.1));
+}
+
+TEST(Candidates, AHoleIsMirroredInTheMiddleOfThePart) {
+  Sketch s = plate();
+  // Two lines upright, so that the sides are levels, too.
+  s.add_stroke(StrokeKind::kLine, 0, 4, {});
+  s.add_stroke(StrokeKind::kLine, 2, 6, {});
+  const std::vector<Candidate> copies = mirror_copies(s, find_levels(s, kTolerance));
+  EXPECT_TRUE(has_circle(copies, {0.8, 0.3, 0.2}, 0.1));
+  EXPECT_TRUE(has_circle(copies, {0.2, 0.7, 0.2}, 0.1));
+  EXPECT_TRUE(has_circle(copies, {0.2, 0.3, 0.0}, 0.1));
+}
+
+TEST(Candidates, TheFourthHoleOfARectangleAndTheRestOfABoltCircle) {
+  Sketch corners;
+  for (const Vector3d& c : {Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(0, 1, 0)})
+    add_circle(c, 0.1, &corners);
+  EXPECT_TRUE(has_circle(circle_patterns(corners, kTolerance), {2, 1, 0}, 0.1));
+
+  Sketch bolts;
+  add_circle({0, 0, 0.5}, 0.4, &bolts);  // on another level
+  for (const double a : {0.0, M_PI / 3}) add_circle({std::cos(a), std::sin(a), 0}, 0.1, &bolts);
+  const std::vector<Candidate> copies = circle_patterns(bolts, kTolerance);
+  for (int k = 2; k < 6; ++k)
+    EXPECT_TRUE(has_circle(copies, {std::cos(k * M_PI / 3), std::sin(k * M_PI / 3), 0}, 0.1)) << k;
+}
+
+TEST(Candidates, WithoutAPictureNothingIsAdded) {
+  EdgeWorld world;
+  world.footprint = 0.005;
+  View view;
+  view.camera = {400, 400, 500, 500, 199.5, 199.5};
+  view.cam_from_world.translation = Vector3d(-0.5, -0.5, 3);
+  world.views = {view};
+  world.maps.resize(1);
+  world.plane_normal.resize(1);
+  const MissingEdges missing = add_missing(plate(), world, {});
+  EXPECT_GT(missing.candidates, 0);
+  EXPECT_TRUE(missing.nats.empty());
+  EXPECT_EQ(missing.sketch.size(), plate().size());
+}
+
+}  // namespace
+}  // namespace sketchsplat
