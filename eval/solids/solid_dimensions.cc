@@ -112,6 +112,7 @@ class Finder {
     using Kind = SolidDimensionKind;
     switch (surfaces_[s].kind) {
       case SurfaceKind::kPlane:
+      case SurfaceKind::kExtrusion:
         break;
       case SurfaceKind::kCylinder:
       case SurfaceKind::kSphere:

@@ -34,11 +34,15 @@ int views_of(const Solid& solid, const SolidFace& face) {
   return int(views.size());
 }
 
+bool has_radius(SurfaceKind kind) {
+  return kind != SurfaceKind::kPlane && kind != SurfaceKind::kExtrusion;
+}
+
 SurfaceRow row_of(const Solid& solid, int f, const SurfaceErrors& errors, const TableScale& scale) {
   const SolidFace& face = solid.faces[f];
   const Surface& s = errors.surfaces()[face.surface];
-  const bool round = s.kind != SurfaceKind::kPlane, cone = s.kind == SurfaceKind::kCone,
-             torus = s.kind == SurfaceKind::kTorus;
+  const bool flat = s.kind == SurfaceKind::kPlane, round = has_radius(s.kind),
+             cone = s.kind == SurfaceKind::kCone, torus = s.kind == SurfaceKind::kTorus;
   const auto sigma = [&](const std::vector<Move>& moves) {
     return errors.sigma(face.surface, moves);
   };
@@ -54,7 +58,7 @@ SurfaceRow row_of(const Solid& solid, int f, const SurfaceErrors& errors, const 
   row.half_angle = cone ? kDegrees * std::atan(std::abs(s.slope)) : kNone;
   row.half_angle_sigma =
       kDegrees * sigma({Move::kSlope}) / errors.reach() / (1 + s.slope * s.slope);
-  row.axis = !round && face.reversed ? Eigen::Vector3d(-s.axis) : s.axis;
+  row.axis = flat && face.reversed ? Eigen::Vector3d(-s.axis) : s.axis;
   row.axis_sigma = kDegrees * sigma({Move::kTiltX, Move::kTiltY}) / errors.reach();
   row.origin = k * s.origin;
   row.position_sigma = k * sigma({Move::kAcrossX, Move::kAcrossY, Move::kAlong});
@@ -136,7 +140,7 @@ std::string surfaces_json(const SolidTables& tables) {
     Json row = {{"face", s.face}, {"surface", s.surface}, {"kind", surface_name(s.kind)}};
     row["unit"] = tables.unit;
     row["area"] = number(s.area);
-    if (s.kind != SurfaceKind::kPlane) {
+    if (has_radius(s.kind)) {
       row["radius"] = number(s.radius);
       row["radius_sigma"] = number(s.radius_sigma);
     }

@@ -11,6 +11,7 @@
 
 #include "eval/inspect/stroke_errors.h"
 #include "sketches/curve/curve.h"
+#include "topology/solid/surface.h"
 
 namespace sketchsplat {
 namespace {
@@ -86,7 +87,8 @@ const std::vector<SurfaceMove>& moves_of(SurfaceKind kind) {
       {M::kAcrossX, M::kAcrossY, M::kTiltX, M::kTiltY, M::kRadius},
       {M::kAcrossX, M::kAcrossY, M::kTiltX, M::kTiltY, M::kRadius, M::kSlope},
       {M::kAcrossX, M::kAcrossY, M::kAlong, M::kRadius},
-      {M::kAcrossX, M::kAcrossY, M::kAlong, M::kTiltX, M::kTiltY, M::kRadius, M::kMinorRadius}};
+      {M::kAcrossX, M::kAcrossY, M::kAlong, M::kTiltX, M::kTiltY, M::kRadius, M::kMinorRadius},
+      {}};  // an extrusion is as its profile was measured
   return kMoves[int(kind)];
 }
 

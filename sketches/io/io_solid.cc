@@ -21,6 +21,12 @@ constexpr int kFormatVersion = 1;
 Json json_of_surface(const Surface& s) {
   Json out = {{"kind", surface_name(s.kind)}, {"origin", json_of_point(s.origin)}};
   if (s.kind != SurfaceKind::kSphere) out["axis"] = json_of_point(s.axis);
+  if (s.kind == SurfaceKind::kExtrusion) {
+    Json points = Json::array();
+    for (const Eigen::Vector3d& p : s.profile) points.push_back(json_of_point(p));
+    out["profile"] = {{"kind", kind_name(s.profile_kind)}, {"points", points}};
+    return out;
+  }
   if (s.kind != SurfaceKind::kPlane) out["radius"] = s.radius;
   if (s.kind == SurfaceKind::kCone) out["slope"] = s.slope;
   if (s.kind == SurfaceKind::kTorus) out["minor_radius"] = s.minor_radius;
@@ -42,8 +48,21 @@ SurfaceKind kind_of(const JsonReader& reader, const Json& j, const std::string& 
   for (int k = 0; k < kNumSurfaceKinds; ++k)
     if (name.is_string() && name.get<std::string>() == surface_name(SurfaceKind(k)))
       return SurfaceKind(k);
-  reader.fail("plane, cylinder, cone, sphere or torus as \"kind\" of " + where,
+  reader.fail("plane, cylinder, cone, sphere, torus or extrusion as \"kind\" of " + where,
               JsonReader::summary(name));
+}
+
+void read_profile(const JsonReader& reader, const Json& j, const std::string& where, Surface* s) {
+  const Json& profile = reader.member(j, "profile", where);
+  const Json& kind = reader.member(profile, "kind", "profile of " + where);
+  if (!kind.is_string() || !parse_kind(kind.get<std::string>(), &s->profile_kind))
+    reader.fail("a kind of curve as profile of " + where, JsonReader::summary(kind));
+  for (const Json& p : reader.array(profile, "points", "profile of " + where, kMostParts))
+    s->profile.push_back(reader.point(p, "a point of the profile of " + where));
+  if (int(s->profile.size()) != num_controls(s->profile_kind))
+    reader.fail(
+        std::to_string(num_controls(s->profile_kind)) + " points in the profile of " + where,
+        std::to_string(s->profile.size()));
 }
 
 Surface read_surface(const JsonReader& reader, const Json& j, const std::string& where) {
@@ -55,6 +74,7 @@ Surface read_surface(const JsonReader& reader, const Json& j, const std::string&
   s.radius = reader.number(j, "radius", 0, where);
   s.slope = reader.number(j, "slope", 0, where);
   s.minor_radius = reader.number(j, "minor_radius", 0, where);
+  if (s.kind == SurfaceKind::kExtrusion) read_profile(reader, j, where, &s);
   if (!(std::abs(s.axis.norm() - 1) < kNoDirection))
     reader.fail("a unit vector as axis of " + where, JsonReader::summary(j["axis"]));
   return s;
