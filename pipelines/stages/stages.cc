@@ -301,16 +301,45 @@ int drop_unsure(const StrokeObservation& observation, const EdgeWorld& world, do
   return before - sketch->size();
 }
 
+StrokeObservation observed(const Sketch& sketch, const EdgeWorld& world,
+                           const ReconstructOptions& options, double* reach_px) {
+  MatchOptions match;
+  match.reach_px = 1.0;
+  match.quadratics = false;
+  *reach_px = match.reach_px;
+  return with_strokes(observe(sketch, world, match, options.polish.spacing_px), world,
+                      options.select.min_views);
+}
+
+// Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
+// seen where they are: with it anything may have come that edgels do not bear out.
+Sketch without_improbable(Sketch sketch, int first, const EdgeWorld& world,
+                          const ReconstructOptions& options, int* left) {
+  constexpr double kProbable = 0.5;
+  double reach_px;
+  const StrokeObservation o = observed(sketch, world, options, &reach_px);
+  record_evidence(o, world, reach_px, &sketch);
+  record_confidence(stroke_features(sketch, world, o), &sketch);
+  std::vector<bool> keep(sketch.size(), true);
+  for (int s = first; s < sketch.size(); ++s) keep[s] = sketch.evidence[s].confidence >= kProbable;
+  *left = int(std::count(keep.begin() + first, keep.end(), true));
+  return keep_strokes(sketch, keep);
+}
+
 // The sketch with edges that it leads to expect where the pictures show them. Nothing without
 // pictures: other detectors' edgels are of something else.
-Sketch with_missing(const Sketch& sketch, const EdgeWorld& world,
-                    const ReconstructOptions& options, RunReport* report, Progress* progress) {
+Sketch with_missing(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
+                    RunReport* report, Progress* progress) {
   const bool pictures = std::any_of(world.maps.begin(), world.maps.end(),
                                     [](const EdgelMap& m) { return m.grey != nullptr; });
   if (!options.missing.on || !pictures || options.deadline.passed()) return sketch;
   Stage stage("missing", 0, report, progress);
   const MissingEdges missing = add_missing(sketch, world, options.missing);
-  const size_t added = missing.nats.size();
+  int added = int(missing.nats.size());
+  const Sketch probable = added == 0
+                              ? sketch
+                              : without_improbable(missing.sketch, missing.sketch.size() - added,
+                                                   world, options, &added);
   report->counts.push_back({"candidates", double(missing.candidates)});
   report->counts.push_back({"strokes_missing", double(added)});
   stage.result(std::to_string(added) + " of " + std::to_string(missing.candidates) +
@@ -318,7 +347,7 @@ Sketch with_missing(const Sketch& sketch, const EdgeWorld& world,
   if (added == 0) return sketch;
   CloseOptions close = options.close;
   close.round.least_turn = 2;  // nobody has seen more of them than what was added
-  return close_graph(missing.sketch, world, prices(options), close).sketch;
+  return close_graph(probable, world, prices(options), close).sketch;
 }
 
 }  // namespace
@@ -344,12 +373,9 @@ Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
     }
   }
   smooth_joints(&out);
-  MatchOptions match;
-  match.reach_px = 1.0;
-  match.quadratics = false;
-  const StrokeObservation o = with_strokes(
-      observe(out, world, match, options.polish.spacing_px), world, options.select.min_views);
-  record_evidence(o, world, match.reach_px, &out);
+  double reach_px;
+  const StrokeObservation o = observed(out, world, options, &reach_px);
+  record_evidence(o, world, reach_px, &out);
   const int unsure = drop_unsure(o, world, options.min_confidence, &out, &regular.kept, report);
   report->counts.push_back({"strokes", double(out.size())});
   report->counts.push_back({"ends_joined", double(closed.joined)});

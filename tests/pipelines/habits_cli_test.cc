@@ -165,7 +165,7 @@ TEST_F(Completion, OfBashKnowsVerbsOptionsChoicesAndFolders) {
   EXPECT_THAT(offers("sketchsplat ''"), AllOf(Contains("reconstruct"), Contains("batch")));
   EXPECT_THAT(offers("sketchsplat re"), testing::ElementsAre("reconstruct"));
   EXPECT_THAT(offers("sketchsplat --th"), testing::ElementsAre("--threads"));
-  EXPECT_THAT(offers("sketchsplat batch --sh"), testing::ElementsAre("--shard"));
+  EXPECT_THAT(offers("sketchsplat batch --shar"), testing::ElementsAre("--shard"));
   EXPECT_THAT(offers("sketchsplat reconstruct x --no-con"), testing::ElementsAre("--no-conics"));
   EXPECT_THAT(offers("sketchsplat reconstruct x --preset ''"),
               testing::ElementsAre("fast", "balanced", "accurate"));

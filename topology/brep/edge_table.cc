@@ -27,6 +27,10 @@ TopoDS_Edge make_edge(const CurvePart& part, const TopoDS_Vertex& begin, const T
   return edge;
 }
 
+// Curves that are farther than this from their surfaces stand for where these meet; times what
+// arcs may be flat by.
+constexpr double kTraced = 50;
+
 // Of every stroke, the surfaces of the faces that it bounds.
 std::vector<std::vector<int>> surfaces_beside(const Solid& solid) {
   std::vector<std::vector<int>> out(solid.edges.size());
@@ -45,7 +49,7 @@ EdgeTable::EdgeTable(const Solid& solid, double flat)
   for (int i = 0; i < sketch.size(); ++i) {
     strokes_[i].curve = curve_of(sketch, i, flat);
     if (beside[i].size() == 2)
-      trace(sketch, i, flat, solid.surfaces[beside[i][0]], solid.surfaces[beside[i][1]],
+      trace(sketch, i, kTraced * flat, solid.surfaces[beside[i][0]], solid.surfaces[beside[i][1]],
             &strokes_[i].curve);
     strokes_[i].begin = sketch.strokes[i].begin;
     strokes_[i].end = sketch.strokes[i].end;

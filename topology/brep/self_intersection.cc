@@ -98,8 +98,7 @@ std::string self_intersection(const Solid& solid, const BuiltSolid& built, doubl
     const std::vector<TopoDS_Shape> faulty(result.GetFaultyShapes1().begin(),
                                            result.GetFaultyShapes1().end());
     if (faulty.size() == 2 && faulty[0].ShapeType() == TopAbs_FACE &&
-        faulty[1].ShapeType() == TopAbs_FACE &&
-        !meet_elsewhere(faulty[0], faulty[1], near))
+        faulty[1].ShapeType() == TopAbs_FACE && !meet_elsewhere(faulty[0], faulty[1], near))
       continue;
     std::string who;
     for (const TopoDS_Shape& shape : faulty)
