@@ -72,6 +72,41 @@ TEST(SolidCompletion, TwoOutlinesAloneAreJoinedAtTheirCorners) {
   EXPECT_NEAR(volume_of(search), 24 - 2, 1e-9);
 }
 
+TEST(SolidCompletion, LinesThatEndShortlyBeforeAPlaneEndInIt) {
+  for (const bool foot_is_seen : {true, false}) {
+    SolidMaker m;
+    const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
+    for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+    if (foot_is_seen) rectangle(&m, 1, 0.5, 2);
+    const std::vector<int> top = rectangle(&m, 1, 0.5, 3);
+    for (size_t i = 0; i < 4; ++i)
+      m.line(m.node(m.solid.edges.nodes.col(top[i]) - Eigen::Vector3d(0, 0, 0.988)), top[i]);
+    EXPECT_NEAR(volume_of(find_solid(m.solid.edges)), 24 + 2, 1e-6);
+  }
+}
+
+// Where a line runs into an arc is known to the root of what both are known to.
+TEST(SolidCompletion, JointsOfLinesAndArcsMaySlideAlongThem) {
+  for (const double slide : {0.0, 0.02, 0.035}) {
+    SolidMaker m;
+    for (const double z : {0.0, 2.0}) {
+      const double r = 1, s = z > 0 ? slide : -slide;
+      const int a = m.node({-3 + r, -2, z}), b = m.node({3 - r - s, -2, z}),
+                c = m.node({3, -2 + r, z}), d = m.node({3, 2, z}), e = m.node({-3, 2, z}),
+                f = m.node({-3, -2 + r, z});
+      const double k = r * (1 - std::sqrt(0.5));
+      m.line(a, b);
+      m.arc(b, c, {3 - k, -2 + k, z});
+      m.line(c, d);
+      m.line(d, e);
+      m.line(e, f);
+      m.arc(f, a, {-3 + k, -2 + k, z});
+    }
+    const SolidSearch search = find_solid(m.solid.edges);
+    EXPECT_NEAR(volume_of(search), 2 * (24 - 2 * (1 - M_PI / 4)), 0.02) << search.why;
+  }
+}
+
 TEST(SolidCompletion, AnEdgeSeenTwiceIsOneEdge) {
   SolidMaker m;
   const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);

@@ -66,6 +66,43 @@ void cut_overlaps(double tolerance, Sketch* sketch) {
     }
 }
 
+// An end that lies in the node of others shares it.
+void weld(const LooseEnd& end, double tolerance, Sketch* sketch) {
+  const Eigen::Vector3d place = sketch->nodes.col(end.node);
+  Stroke& stroke = sketch->strokes[end.stroke];
+  int& own = stroke.begin == end.node ? stroke.begin : stroke.end;
+  const int far = stroke.begin == end.node ? stroke.end : stroke.begin;
+  for (const Stroke& s : sketch->strokes)
+    for (const int node : {s.begin, s.end})
+      if (node >= 0 && node != end.node && node != far &&
+          (sketch->nodes.col(node) - place).norm() <= tolerance) {
+        own = node;
+        return;
+      }
+}
+
+// A line that ends loose shortly before a plane of other strokes, or behind it, ends in it.
+void extend_to_planes(double tolerance, double reach, Sketch* sketch) {
+  const std::vector<Eigen::Matrix3Xd> polylines = polylines_of(*sketch, kPieces);
+  const std::vector<PlaneStrokes> planes = find_planes(*sketch, polylines, tolerance);
+  for (const LooseEnd& end : loose_ends(*sketch)) {
+    if (sketch->strokes[end.stroke].kind != StrokeKind::kLine) continue;
+    const Eigen::Vector3d direction = tangent_in(*sketch, end.stroke, end.node);
+    double nearest = reach;
+    const Eigen::Vector3d place = sketch->nodes.col(end.node);
+    for (const PlaneStrokes& p : planes) {
+      const double across = direction.dot(p.plane.normal);
+      if (std::abs(across) < 0.5 || p.strokes.size() < 3) continue;
+      const double along = (p.plane.origin - place).dot(p.plane.normal) / across;
+      if (std::abs(along) >= std::abs(nearest)) continue;
+      nearest = along;
+    }
+    if (std::abs(nearest) >= reach) continue;
+    sketch->nodes.col(end.node) = place + nearest * direction;
+    weld(end, tolerance, sketch);
+  }
+}
+
 // Along a smooth rim a cylinder runs into a sphere or a torus, and nothing else begins there.
 void keep_to_rounds(int begin, int end, std::vector<SurfaceStrokes>* surfaces) {
   const auto is_rim = [&](int s) { return s >= begin && s < end; };
@@ -107,6 +144,7 @@ Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours,
   Completed out;
   Sketch cut = seen;
   cut_overlaps(tolerance, &cut);
+  extend_to_planes(tolerance, slide, &cut);
   MatchedRims matched = match_rims(cut, tolerance);
   out.seen = std::move(matched.sketch);
   out.now = std::move(matched.now);

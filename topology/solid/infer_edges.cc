@@ -63,6 +63,9 @@ class Inference {
   void add_rulings(int index) {
     const Layout layout(surfaces_[index].surface);
     const std::vector<int>& nodes = nodes_[index];
+    // Off by this along the arc, a line that is tangent to it leaves it by a tolerance.
+    const double wide =
+        std::max(slide_, std::sqrt(2 * surfaces_[index].surface.radius * slide_ / 9));
     std::vector<bool> done(nodes.size());
     for (size_t i = 0; i < nodes.size(); ++i) {
       if (done[i]) continue;
@@ -72,7 +75,8 @@ class Inference {
         const Eigen::Vector2d flat = layout.flat(Vector3d(sketch_.nodes.col(nodes[k])));
         double off = flat.x() - u;
         off -= layout.period() * std::round(off / layout.period());
-        if (std::abs(off) > slide_) continue;
+        const bool slides = is_smooth(nodes[i]) && is_smooth(nodes[k]);
+        if (std::abs(off) > (slides ? wide : slide_)) continue;
         done[k] = true;
         along.emplace_back(flat.y(), nodes[k]);
       }
@@ -80,14 +84,28 @@ class Inference {
     }
   }
 
+  // Do two strokes go on from one another there?
+  bool is_smooth(int node) const {
+    std::vector<Vector3d> away;
+    for (int s = 0; s < seen_; ++s)
+      if (sketch_.strokes[s].begin == node || sketch_.strokes[s].end == node)
+        away.push_back(tangent_in(sketch_, s, node));
+    return away.size() == 2 && away[0].dot(away[1]) < 0 && away[0].cross(away[1]).norm() < kBend;
+  }
+
   void add_meeting(int a, int b) {
     const Surface &p = surfaces_[a].surface, &q = surfaces_[b].surface;
     const Vector3d direction = p.axis.cross(q.axis);
     if (direction.norm() < 0.02) return;  // about a degree: where they meet is not known
     std::vector<std::pair<double, int>> along;
-    for (const int node : nodes_[a])
-      if (std::binary_search(nodes_[b].begin(), nodes_[b].end(), node))
-        along.emplace_back(direction.normalized().dot(sketch_.nodes.col(node)), node);
+    std::set<int> nodes(nodes_[a].begin(), nodes_[a].end());
+    nodes.insert(nodes_[b].begin(), nodes_[b].end());
+    for (const int node : nodes) {
+      const Vector3d place = sketch_.nodes.col(node);
+      if (std::abs(surface_distance(p, place)) <= tolerance_ &&
+          std::abs(surface_distance(q, place)) <= tolerance_)
+        along.emplace_back(direction.normalized().dot(place), node);
+    }
     add_neighbours(&along, false);
   }
 
