@@ -265,6 +265,20 @@ class Search {
   std::vector<bool> left_;  // per stroke that is seen: it bounds no face of the last choice
 };
 
+// Largest distance of a place on a stroke that is seen from where the stroke was.
+double farthest_move(const Sketch& before, const Solid& solid) {
+  const Sketch& after = solid.edges;
+  constexpr int kPlaces = 8;
+  double most = 0;
+  Eigen::Vector3d p, d;
+  for (int s = 0; s < after.size(); ++s)
+    for (int i = 0; !solid.inferred[s] && i <= kPlaces; ++i) {
+      evaluate_stroke(after, s, double(i) / kPlaces, &p, &d);
+      most = std::max(most, distance_to_stroke(before, s, p).distance);
+    }
+  return most;
+}
+
 }  // namespace
 
 SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
@@ -281,7 +295,14 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   for (size_t i = 0; i < searches.size() && !found.back().solid; ++i)
     if (!found[i].doubtful.empty()) found.push_back(searches[i].with_copies());
   SolidSearch& last = found.back().solid ? found.back() : found.front();
-  if (last.solid) adjust(&*last.solid);
+  if (last.solid) {
+    const Sketch before = last.solid->edges;
+    adjust(&*last.solid);
+    if (farthest_move(before, *last.solid) > 3 * tolerance) {
+      last.solid.reset();
+      last.why = "curves would have to move far to lie on their faces";
+    }
+  }
   return std::move(last);
 }
 
