@@ -265,14 +265,15 @@ class Search {
   std::vector<bool> left_;  // per stroke that is seen: it bounds no face of the last choice
 };
 
-// Largest distance of a place on a stroke that is seen from where the stroke was.
+// Largest distance of a place inside of a stroke that is seen from where the stroke was; ends may
+// slide along.
 double farthest_move(const Sketch& before, const Solid& solid) {
   const Sketch& after = solid.edges;
   constexpr int kPlaces = 8;
   double most = 0;
   Eigen::Vector3d p, d;
   for (int s = 0; s < after.size(); ++s)
-    for (int i = 0; !solid.inferred[s] && i <= kPlaces; ++i) {
+    for (int i = 1; !solid.inferred[s] && i < kPlaces; ++i) {
       evaluate_stroke(after, s, double(i) / kPlaces, &p, &d);
       most = std::max(most, distance_to_stroke(before, s, p).distance);
     }
