@@ -291,9 +291,10 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   for (const double share : {1.0, 1.0 / 3}) {
     searches.emplace_back(sketch, share * tolerance, 3 * tolerance, options, evidence);
     found.push_back(searches.back().plain());
-    if (found.back().solid) break;
+    if (found.back().solid || found.back().surfaces > options.many_surfaces) break;
   }
-  for (size_t i = 0; i < searches.size() && !found.back().solid; ++i)
+  const bool many = found.front().surfaces > options.many_surfaces;
+  for (size_t i = 0; i < searches.size() && !many && !found.back().solid; ++i)
     if (!found[i].doubtful.empty()) found.push_back(searches[i].with_copies());
   SolidSearch& last = found.back().solid ? found.back() : found.front();
   if (last.solid) {

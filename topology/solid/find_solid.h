@@ -22,7 +22,8 @@ struct SolidOptions {
   double margin = 4;        ///< [nat] by which the second-best choice must be worse
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
-  int nodes = 20000;  ///< of the search tree for the choice
+  int many_surfaces = 150;  ///< with more candidates it is not searched more than once
+  int nodes = 20000;        ///< of the search tree for the choice
   EvidencePrices evidence;
 };
 
