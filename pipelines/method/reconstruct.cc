@@ -40,8 +40,9 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // strokes, and these tell whether the cameras err; then rounds of drawing the strokes into the
 // views, moving them and simplifying the graph, until nothing changes; and the same once more with
 // what is found in the edgels that are left. With siblings of the part, their family's strokes,
-// moved onto the edgels, come first, and the rest is for edgels that are left. At last, the solid
-// that the strokes bound, if they tell one.
+// moved onto the edgels, come first, and the rest is for edgels that are left. Then the edges that
+// the strokes lead to expect, where the pictures show them. At last, the solid that the strokes
+// bound, if they tell one.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
@@ -69,6 +70,8 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   }
   sketch = look_again(sketch, world, targets, last, &report, progress);
   sketch = drop_print(sketch, world, *detector, &report, progress);
+  sketch = close_sketch(sketch, world, last, &report);
+  sketch = add_missing_edges(sketch, world, last, &report, progress);
   sketch = finish_sketch(sketch, world, last, &report, progress);
   if (sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");

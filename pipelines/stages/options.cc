@@ -349,4 +349,8 @@ void set_options(const OptionTexts& texts, ReconstructOptions* options) {
   }
 }
 
+Prices prices(const ReconstructOptions& options) {
+  return {options.segment.price, options.rechain.sigma_px};
+}
+
 }  // namespace sketchsplat

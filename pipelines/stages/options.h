@@ -19,6 +19,7 @@
 #include "pipelines/join/close_graph.h"
 #include "pipelines/join/rechain.h"
 #include "pipelines/join/splice.h"
+#include "pipelines/survey/describe.h"
 #include "pipelines/survey/extent.h"
 #include "pipelines/survey/select.h"
 #include "sketches/fit/segment.h"
@@ -105,6 +106,9 @@ void list_fields(DetectionOptions* options, Fields* fields);
 void list_fields(ReconstructOptions* options, Fields* fields);
 void list_fields(CadOptions* options, Fields* fields);
 void list_fields(OutputOptions* options, Fields* fields);
+
+/// One price and one least deviation for all that is described.
+Prices prices(const ReconstructOptions& options);
 
 /// Sets what the preset (a name in preset_names()) stands for, leaves the rest alone. "balanced" is
 /// the defaults.

@@ -23,7 +23,6 @@ constexpr int kSecondViews = 3;      // that agree on a point where nothing else
 constexpr int kShortestRest = 8;     // edgels: shorter rests of chains are corners and noise
 constexpr double kLonger = 3;        // times the shortest stroke: the shortest that comes late
 constexpr double kPrintSpacing = 4;  // [px] of the points of strokes that a detector judges
-constexpr double kSmoother = 0.1;    // standard deviation of smooth joints at last
 
 struct Round {
   Sketch sketch;
@@ -80,22 +79,6 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
   return polish(fit_extents(sketch, world, extent_options(options)), world, early(options));
 }
 
-// One price and one least deviation for all that is described.
-Prices prices(const ReconstructOptions& options) {
-  return {options.segment.price, options.rechain.sigma_px};
-}
-
-RegularizeOptions regularize_options(const ReconstructOptions& options) {
-  RegularizeOptions regularize = options.regularize;
-  regularize.price = options.segment.price;
-  regularize.sigma_px = options.rechain.sigma_px;
-  const double degree = M_PI / 180;
-  regularize.refine.smooth_angle = options.polish.smooth_deg * degree;
-  regularize.refine.smooth_weight =
-      std::pow(1 / (kSmoother * options.polish.smooth_sigma_deg * degree), 2);
-  return regularize;
-}
-
 // The graph that says what the edgels do in fewer words.
 Simplified simpler_graph(const Sketch& sketch, const EdgeWorld& world,
                          const ReconstructOptions& options) {
@@ -103,17 +86,6 @@ Simplified simpler_graph(const Sketch& sketch, const EdgeWorld& world,
   TopologyOptions topology = options.topology;
   static_cast<DescriptionCost&>(topology) = described.cost;
   return simplify(sketch, topology, described.points);
-}
-
-void count_regularities(const Regularized& regular, RunReport* report) {
-  for (int k = 0; k < kRelationKinds; ++k) {
-    const RelationKind kind = RelationKind(k);
-    const auto is_kind = [kind](const Regularity& r) { return r.kind == kind; };
-    const auto count = std::count_if(regular.kept.begin(), regular.kept.end(), is_kind);
-    report->counts.push_back({std::string("regular_") + relation_name(kind), double(count)});
-  }
-  report->counts.push_back({"regular_nats_saved", regular.nats_saved});
-  report->regularities = regular.kept;
 }
 
 // Chains of strokes in as few words as their edgels allow.
@@ -261,138 +233,6 @@ Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
   const Round more = with_rest(sketch, world, options, report, progress);
   if (!more.changed || options.rounds == 0) return more.sketch;
   return run_round(more.sketch, world, targets, options, report, progress).sketch;
-}
-
-namespace {
-
-// Relations among the strokes that stay.
-void renumber(const std::vector<bool>& stays, std::vector<Regularity>* kept) {
-  std::vector<int> now;
-  int next = 0;
-  for (const bool s : stays) now.push_back(s ? next++ : -1);
-  for (Regularity& r : *kept) {
-    for (int& s : r.strokes) s = now[s];
-    r.strokes.erase(std::remove(r.strokes.begin(), r.strokes.end(), -1), r.strokes.end());
-  }
-  kept->erase(std::remove_if(kept->begin(), kept->end(),
-                             [](const Regularity& r) { return r.strokes.size() < 2; }),
-              kept->end());
-}
-
-// Fills in the confidence and drops what is less probable than wanted; says how many.
-int drop_unsure(const StrokeObservation& observation, const EdgeWorld& world, double least,
-                Sketch* sketch, std::vector<Regularity>* kept, RunReport* report) {
-  const std::vector<StrokeFeatures> features = stroke_features(*sketch, world, observation);
-  record_confidence(features, sketch);
-  for (int i = 0; i < sketch->size(); ++i) {
-    const double confidence = sketch->evidence[i].confidence;
-    if (confidence < least) continue;
-    report->strokes.push_back(features[i].named());
-    report->strokes.back().push_back({"confidence", confidence});
-  }
-  const int before = sketch->size();
-  std::vector<bool> stays;
-  for (const Evidence& e : sketch->evidence) stays.push_back(!(e.confidence < least));
-  renumber(stays, kept);
-  *sketch = keep_confident(*sketch, least);
-  if (before > 0 && sketch->size() == 0)
-    throw TooLittleError("expected strokes as probable as --min-confidence, found " +
-                         std::to_string(before) + " less probable ones");
-  return before - sketch->size();
-}
-
-StrokeObservation observed(const Sketch& sketch, const EdgeWorld& world,
-                           const ReconstructOptions& options, double* reach_px) {
-  MatchOptions match;
-  match.reach_px = 1.0;
-  match.quadratics = false;
-  *reach_px = match.reach_px;
-  return with_strokes(observe(sketch, world, match, options.polish.spacing_px), world,
-                      options.select.min_views);
-}
-
-// Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
-// seen where they are: with it anything may have come that edgels do not bear out.
-Sketch without_improbable(Sketch sketch, int first, const EdgeWorld& world,
-                          const ReconstructOptions& options, int* left) {
-  constexpr double kProbable = 0.5;
-  double reach_px;
-  const StrokeObservation o = observed(sketch, world, options, &reach_px);
-  record_evidence(o, world, reach_px, &sketch);
-  record_confidence(stroke_features(sketch, world, o), &sketch);
-  std::vector<bool> keep(sketch.size(), true);
-  for (int s = first; s < sketch.size(); ++s) keep[s] = sketch.evidence[s].confidence >= kProbable;
-  *left = int(std::count(keep.begin() + first, keep.end(), true));
-  return keep_strokes(sketch, keep);
-}
-
-// The sketch with edges that it leads to expect where the pictures show them. Nothing without
-// pictures: other detectors' edgels are of something else.
-Sketch with_missing(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
-                    RunReport* report, Progress* progress) {
-  const bool pictures = std::any_of(world.maps.begin(), world.maps.end(),
-                                    [](const EdgelMap& m) { return m.grey != nullptr; });
-  if (!options.missing.on || !pictures || options.deadline.passed()) return sketch;
-  Stage stage("missing", 0, report, progress);
-  const MissingEdges missing = add_missing(sketch, world, options.missing);
-  int added = int(missing.nats.size());
-  const Sketch probable = added == 0
-                              ? sketch
-                              : without_improbable(missing.sketch, missing.sketch.size() - added,
-                                                   world, options, &added);
-  report->counts.push_back({"candidates", double(missing.candidates)});
-  report->counts.push_back({"strokes_missing", double(added)});
-  stage.result(std::to_string(added) + " of " + std::to_string(missing.candidates) +
-               " candidates stand");
-  if (added == 0) return sketch;
-  CloseOptions close = options.close;
-  close.round.least_turn = 2;  // nobody has seen more of them than what was added
-  return close_graph(probable, world, prices(options), close).sketch;
-}
-
-}  // namespace
-
-Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
-                     const ReconstructOptions& options, RunReport* report, Progress* progress) {
-  Closed closed = options.close.on && !options.deadline.passed()
-                      ? close_graph(sketch, world, prices(options), options.close)
-                      : Closed{sketch};
-  closed.sketch = with_missing(closed.sketch, world, options, report, progress);
-  Stage stage("polish", 0, report, progress);
-  Sketch out = closed.sketch;
-  Regularized regular;
-  if (options.final_polish) {
-    Observation last;
-    PolishOptions smooth = options.polish;  // what is nearly one curve becomes one
-    smooth.smooth_sigma_deg *= kSmoother;
-    out = polish(closed.sketch, world, smooth, &last);
-    if (options.regularize.on && last.layout.size() > 0 && !options.deadline.passed()) {
-      regular = regularize(out, with_strokes(std::move(last), world, 1), world.footprint,
-                           regularize_options(options));
-      out = regular.sketch;
-    }
-  }
-  smooth_joints(&out);
-  double reach_px;
-  const StrokeObservation o = observed(out, world, options, &reach_px);
-  record_evidence(o, world, reach_px, &out);
-  const int unsure = drop_unsure(o, world, options.min_confidence, &out, &regular.kept, report);
-  report->counts.push_back({"strokes", double(out.size())});
-  report->counts.push_back({"ends_joined", double(closed.joined)});
-  report->counts.push_back({"lines_bridged", double(closed.bridged)});
-  report->counts.push_back({"arcs_rounded", double(closed.rounded)});
-  const std::vector<CurveChain> chains = curve_chains(out);
-  const std::vector<int> curve = chain_of_strokes(chains, out.size());
-  for (Regularity& r : regular.kept)
-    for (int& s : r.strokes) s = curve[s];
-  for (int s = 0; s < out.size(); ++s) report->strokes[s].push_back({"curve", double(curve[s])});
-  count_regularities(regular, report);
-  report->counts.push_back({"loose_ends", double(count_loose_ends(out, world.footprint))});
-  report->counts.push_back({"unsure", double(unsure)});
-  report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
-  report->counts.push_back({"footprint", world.footprint});
-  stage.result(std::to_string(out.size()) + " strokes");
-  return out;
 }
 
 Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report) {

@@ -22,8 +22,8 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector
 /// Without masks: finds the object among other things (find_object.h) by the most meaningful edges,
 /// and leaves out edgels that cannot be of it. With masks nothing changes. If the user gave a box,
 /// the object is what lies in it, with masks or without.
-EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
-                          RunReport* report, Progress* progress);
+EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
+                          Progress* progress);
 
 /// The space sweep over all edgels. Throws TooLittleError if no point is found.
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
@@ -55,9 +55,17 @@ Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
                   const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
                   RunReport* report, Progress* progress);
 
-/// Gaps and loose ends closed, edges added that the others lead to expect and that the pictures
-/// show (add_missing.h), last polish on the edgels, last choice, and the evidence that is written
-/// with the sketch.
+/// Gaps and loose ends closed where that takes fewer words.
+Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
+                    RunReport* report);
+
+/// Edges added that the others lead to expect and that the pictures show (add_missing.h), if they
+/// are edges more probably than not. Nothing without pictures: other detectors' edgels are of
+/// something else.
+Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
+                         const ReconstructOptions& options, RunReport* report, Progress* progress);
+
+/// Last polish on the edgels, last choice, and the evidence that is written with the sketch.
 Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                      const ReconstructOptions& options, RunReport* report, Progress* progress);
 
