@@ -11,6 +11,7 @@
 #include "pipelines/base/sketch_input.h"
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
+#include "sketches/graph/inferred.h"
 #include "sketches/io/io.h"
 #include "sketches/solve/covariance.h"
 #include "topology/faces/planar_faces.h"
@@ -53,6 +54,7 @@ Curve curve_of(const Sketch& sketch, int i) {
   const Evidence& e = sketch.evidence[i];
   c.views = e.views;
   c.confidence = e.confidence, c.rms_px = e.rms_px, c.sigma = e.sigma;
+  c.inferred = is_inferred(e);
   if (!e.covariance.empty()) c.covariance = from_upper_triangle(e.covariance);
   return c;
 }

@@ -33,6 +33,7 @@ struct Curve {
   Eigen::Vector3d major = nan(), minor = nan();  ///< semi-axes of ellipses and elliptic arcs
   std::vector<int> views;                        ///< that see it: indices into CurveSketch::views
   double confidence = 0;  ///< probability that it is an edge, in [0, 1]; NaN if unknown
+  bool inferred = false;  ///< no view sees it: the solid, or siblings of the part, imply it
   double rms_px = 0;      ///< [px] root mean square distance to the edges in the images
   double sigma = 0;       ///< largest standard deviation of a point of it, across it
   /// 3n x 3n of the n control points, x y z each; empty if unknown.

@@ -179,6 +179,7 @@ void bind_curves(py::module_* m) {
       .def_readonly("minor", &Curve::minor)
       .def_readonly("views", &Curve::views)
       .def_readonly("confidence", &Curve::confidence)
+      .def_readonly("inferred", &Curve::inferred)
       .def_readonly("rms_px", &Curve::rms_px)
       .def_readonly("sigma", &Curve::sigma)
       .def_readonly("covariance", &Curve::covariance)

@@ -10,6 +10,7 @@
 #include "pipelines/cameras/refine_poses.h"
 #include "pipelines/detectors/detectors.h"
 #include "pipelines/method/close_solid.h"
+#include "pipelines/method/complete_sketch.h"
 #include "pipelines/method/family_start.h"
 #include "pipelines/method/scene_tags.h"
 #include "pipelines/stages/stages.h"
@@ -42,7 +43,7 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // what is found in the edgels that are left. With siblings of the part, their family's strokes,
 // moved onto the edgels, come first, and the rest is for edgels that are left. Then the edges that
 // the strokes lead to expect, where the pictures show them. At last, the solid that the strokes
-// bound, if they tell one.
+// bound, if they tell one, and its edges that no picture shows.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
@@ -72,13 +73,15 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   sketch = drop_print(sketch, world, *detector, &report, progress);
   sketch = close_sketch(sketch, world, last, &report);
   sketch = add_missing_edges(sketch, world, last, &report, progress);
-  sketch = finish_sketch(sketch, world, last, &report, progress);
-  if (sketch.size() == 0)
+  FinishedSketch finished = finish_sketch(sketch, world, last, &report, progress);
+  if (finished.sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   tell_stop(options, &report, progress);
-  const Sketch proposed = propose_hidden(sketch, world, &report);
-  const SolidSearch solid = close_solid(sketch, world, options, &report, progress);
-  return {sketch,
+  const SolidSearch solid = close_solid(finished.sketch, world, options, &report, progress);
+  finished = complete_sketch(std::move(finished), solid, world, options, &report, progress);
+  const Sketch proposed = propose_hidden(finished.sketch, world, &report);
+  report_sketch(finished, world, &report);
+  return {finished.sketch,
           report,
           proposed,
           view_names(world),

@@ -13,6 +13,7 @@
 #include "pipelines/pages/page.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
+#include "sketches/graph/inferred.h"
 
 namespace sketchsplat {
 namespace {
@@ -98,6 +99,7 @@ Json curves_json(const Sketch& sketch, const Extent& extent) {
          {"support_views", e.support_views},
          {"rms_px", e.rms_px},
          {"sigma", e.sigma},
+         {"inferred", is_inferred(e)},
          {"confidence", std::isnan(e.confidence) ? Json() : Json(e.confidence)},
          {"points", visible ? points_json(sketch, s, length, extent) : Json::array()}});
   }

@@ -13,6 +13,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
+constexpr double kProbable = 0.5;  // of an edge that something else than its edgels tells of
 
 RegularizeOptions regularize_options(const ReconstructOptions& options) {
   RegularizeOptions regularize = options.regularize;
@@ -23,17 +24,6 @@ RegularizeOptions regularize_options(const ReconstructOptions& options) {
   regularize.refine.smooth_weight =
       std::pow(1 / (kSmoother * options.polish.smooth_sigma_deg * degree), 2);
   return regularize;
-}
-
-void count_regularities(const Regularized& regular, RunReport* report) {
-  for (int k = 0; k < kRelationKinds; ++k) {
-    const RelationKind kind = RelationKind(k);
-    const auto is_kind = [kind](const Regularity& r) { return r.kind == kind; };
-    const auto count = std::count_if(regular.kept.begin(), regular.kept.end(), is_kind);
-    report->counts.push_back({std::string("regular_") + relation_name(kind), double(count)});
-  }
-  report->counts.push_back({"regular_nats_saved", regular.nats_saved});
-  report->regularities = regular.kept;
 }
 
 // Relations among the strokes that stay.
@@ -50,28 +40,6 @@ void renumber(const std::vector<bool>& stays, std::vector<Regularity>* kept) {
               kept->end());
 }
 
-// Fills in the confidence and drops what is less probable than wanted; says how many.
-int drop_unsure(const StrokeObservation& observation, const EdgeWorld& world, double least,
-                Sketch* sketch, std::vector<Regularity>* kept, RunReport* report) {
-  const std::vector<StrokeFeatures> features = stroke_features(*sketch, world, observation);
-  record_confidence(features, sketch);
-  for (int i = 0; i < sketch->size(); ++i) {
-    const double confidence = sketch->evidence[i].confidence;
-    if (confidence < least) continue;
-    report->strokes.push_back(features[i].named());
-    report->strokes.back().push_back({"confidence", confidence});
-  }
-  const int before = sketch->size();
-  std::vector<bool> stays;
-  for (const Evidence& e : sketch->evidence) stays.push_back(!(e.confidence < least));
-  renumber(stays, kept);
-  *sketch = keep_confident(*sketch, least);
-  if (before > 0 && sketch->size() == 0)
-    throw TooLittleError("expected strokes as probable as --min-confidence, found " +
-                         std::to_string(before) + " less probable ones");
-  return before - sketch->size();
-}
-
 // Fills in what the images say of each stroke.
 StrokeObservation with_evidence(const EdgeWorld& world, const ReconstructOptions& options,
                                 Sketch* sketch) {
@@ -84,11 +52,17 @@ StrokeObservation with_evidence(const EdgeWorld& world, const ReconstructOptions
   return o;
 }
 
+// Of a stroke that no image shows.
+Evidence unseen() {
+  Evidence e;
+  e.opacity = 0;
+  return e;
+}
+
 // Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
 // seen where they are: with it anything may have come that edgels do not bear out.
 Sketch without_improbable(Sketch sketch, int first, const EdgeWorld& world,
                           const ReconstructOptions& options, int* left) {
-  constexpr double kProbable = 0.5;
   const StrokeObservation o = with_evidence(world, options, &sketch);
   record_confidence(stroke_features(sketch, world, o), &sketch);
   std::vector<bool> keep(sketch.size(), true);
@@ -132,38 +106,85 @@ Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
   return close_graph(probable, world, prices(options), close).sketch;
 }
 
-Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
-                     const ReconstructOptions& options, RunReport* report, Progress* progress) {
+PolishOptions last_polish(const ReconstructOptions& options) {
+  PolishOptions polish = options.polish;
+  polish.smooth_sigma_deg *= kSmoother;
+  return polish;
+}
+
+FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
+                             const ReconstructOptions& options, RunReport* report,
+                             Progress* progress) {
   Stage stage("polish", 0, report, progress);
-  Sketch out = sketch;
-  Regularized regular;
+  FinishedSketch out;
+  out.sketch = sketch;
   if (options.final_polish) {
     Observation last;
-    PolishOptions smooth = options.polish;  // what is nearly one curve becomes one
-    smooth.smooth_sigma_deg *= kSmoother;
-    out = polish(sketch, world, smooth, &last);
+    out.sketch = polish(sketch, world, last_polish(options), &last);
     if (options.regularize.on && last.layout.size() > 0 && !options.deadline.passed()) {
-      regular = regularize(out, with_strokes(std::move(last), world, 1), world.footprint,
-                           regularize_options(options));
-      out = regular.sketch;
+      Regularized regular = regularize(out.sketch, with_strokes(std::move(last), world, 1),
+                                       world.footprint, regularize_options(options));
+      out.sketch = std::move(regular.sketch);
+      out.kept = std::move(regular.kept);
+      report->counts.push_back({"regular_nats_saved", regular.nats_saved});
     }
   }
-  smooth_joints(&out);
-  const StrokeObservation o = with_evidence(world, options, &out);
-  const int unsure = drop_unsure(o, world, options.min_confidence, &out, &regular.kept, report);
-  report->counts.push_back({"strokes", double(out.size())});
-  const std::vector<CurveChain> chains = curve_chains(out);
-  const std::vector<int> curve = chain_of_strokes(chains, out.size());
-  for (Regularity& r : regular.kept)
-    for (int& s : r.strokes) s = curve[s];
-  for (int s = 0; s < out.size(); ++s) report->strokes[s].push_back({"curve", double(curve[s])});
-  count_regularities(regular, report);
-  report->counts.push_back({"loose_ends", double(count_loose_ends(out, world.footprint))});
-  report->counts.push_back({"unsure", double(unsure)});
-  report->counts.push_back({"edgel_sigma_px", o.matches.sigma_px});
-  report->counts.push_back({"footprint", world.footprint});
-  stage.result(std::to_string(out.size()) + " strokes");
+  smooth_joints(&out.sketch);
+  judge_strokes(world, options, {}, &out);
+  stage.result(std::to_string(out.sketch.size()) + " strokes");
   return out;
+}
+
+void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
+                   const std::vector<double>& implied, FinishedSketch* finished) {
+  Sketch& sketch = finished->sketch;
+  const StrokeObservation o = with_evidence(world, options, &sketch);
+  const std::vector<StrokeFeatures> features = stroke_features(sketch, world, o);
+  record_confidence(features, &sketch);
+  for (size_t s = 0; s < implied.size(); ++s)
+    if (sketch.evidence[s].confidence < implied[s]) {
+      if (sketch.evidence[s].confidence < kProbable) sketch.evidence[s] = unseen();
+      sketch.evidence[s].confidence = implied[s];
+    }
+  std::vector<bool> stays;
+  finished->features.clear();
+  for (int s = 0; s < sketch.size(); ++s) {
+    const double confidence = sketch.evidence[s].confidence;
+    stays.push_back(!(confidence < options.min_confidence));
+    if (!stays.back()) continue;
+    finished->features.push_back(features[s].named());
+    finished->features.back().push_back({"confidence", confidence});
+  }
+  const int before = sketch.size();
+  renumber(stays, &finished->kept);
+  sketch = keep_strokes(sketch, stays);
+  finished->unsure += before - sketch.size();
+  finished->edgel_sigma_px = o.matches.sigma_px;
+  if (before > 0 && sketch.size() == 0)
+    throw TooLittleError("expected strokes as probable as --min-confidence, found " +
+                         std::to_string(before) + " less probable ones");
+}
+
+void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report) {
+  const Sketch& sketch = finished.sketch;
+  report->strokes = finished.features;
+  report->regularities = finished.kept;
+  const std::vector<CurveChain> chains = curve_chains(sketch);
+  const std::vector<int> curve = chain_of_strokes(chains, sketch.size());
+  for (Regularity& r : report->regularities)
+    for (int& s : r.strokes) s = curve[s];
+  for (int s = 0; s < sketch.size(); ++s) report->strokes[s].push_back({"curve", double(curve[s])});
+  report->counts.push_back({"strokes", double(sketch.size())});
+  for (int k = 0; k < kRelationKinds; ++k) {
+    const RelationKind kind = RelationKind(k);
+    const auto is_kind = [kind](const Regularity& r) { return r.kind == kind; };
+    const auto count = std::count_if(finished.kept.begin(), finished.kept.end(), is_kind);
+    report->counts.push_back({std::string("regular_") + relation_name(kind), double(count)});
+  }
+  report->counts.push_back({"loose_ends", double(count_loose_ends(sketch, world.footprint))});
+  report->counts.push_back({"unsure", double(finished.unsure)});
+  report->counts.push_back({"edgel_sigma_px", finished.edgel_sigma_px});
+  report->counts.push_back({"footprint", world.footprint});
 }
 
 }  // namespace sketchsplat

@@ -288,6 +288,7 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   f->add("close", &o->close.on, "Close gaps, loose ends and circles at last");
   f->add("regularize", &o->regularize.on,
          "Let strokes share directions, planes, axes and radii where that is simpler");
+  f->add("inferred", &o->inferred, "Write edges, too, that no picture shows and the solid implies");
   f->group("Output");
   f->add("min-confidence", &o->min_confidence, "", 0, 1, "Less probable strokes are left out");
   list_region(o, f);

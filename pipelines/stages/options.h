@@ -72,6 +72,7 @@ struct ReconstructOptions : DetectionOptions {
   /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
   double surfel_gap_price = 2;
   std::string like;  ///< sketches of siblings, one a line; empty: none
+  bool inferred = true;           ///< edges that no image shows and the solid implies
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
   std::string box_text = "auto";  ///< as the user gives it
   Eigen::AlignedBox3d box;    ///< world units: only what is in it is the object; empty: found out

@@ -65,9 +65,32 @@ Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const Reconstr
 Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
                          const ReconstructOptions& options, RunReport* report, Progress* progress);
 
-/// Last polish on the edgels, last choice, and the evidence that is written with the sketch.
-Sketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
-                     const ReconstructOptions& options, RunReport* report, Progress* progress);
+/// A sketch with what is known of it.
+struct FinishedSketch {
+  Sketch sketch;                  ///< with evidence
+  std::vector<Regularity> kept;   ///< relations that its strokes keep to
+  std::vector<Numbers> features;  ///< per stroke: what its confidence was made of
+  int unsure = 0;                 ///< strokes that were left out as less probable than asked for
+  double edgel_sigma_px = 0;      ///< of the edgels about the strokes
+};
+
+/// As the options say, but that what is nearly one curve becomes one.
+PolishOptions last_polish(const ReconstructOptions& options);
+
+/// Last polish on the edgels, regularities, and the evidence.
+FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
+                             const ReconstructOptions& options, RunReport* report,
+                             Progress* progress);
+
+/// Fills in evidence and features, and leaves out strokes less probable than asked for, which
+/// throws TooLittleError if none is left. `implied`: per stroke the probability that something else
+/// than the images gives it, or none. A stroke that is probable by this alone has the evidence of
+/// one that no view sees.
+void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
+                   const std::vector<double>& implied, FinishedSketch* finished);
+
+/// Fills the report's strokes, regularities (by curve, see curve_chain.h) and counts.
+void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report);
 
 /// Edges that no view shows but the graph implies (propose.h); counts them in the report.
 Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report);

@@ -7,6 +7,7 @@
 #include "datasets/types/errors.h"
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve_chain.h"
+#include "sketches/graph/inferred.h"
 #include "sketches/io/io.h"
 #include "sketches/io/json_reader.h"
 #include "sketches/io/json_text.h"
@@ -72,6 +73,7 @@ Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<in
   if (e.bias_px > 0) out["bias_px"] = e.bias_px;
   out["sigma"] = e.sigma;
   if (!std::isnan(e.confidence)) out["confidence"] = e.confidence;
+  if (is_inferred(e)) out["inferred"] = true;
   if (!e.views.empty()) out["views"] = e.views;
   if (!e.covariance.empty()) {
     out["determined"] = e.determined;

@@ -14,7 +14,7 @@ rm -rf "$folder"
 mkdir -p "$folder/scenes/m-broken <b>"
 echo '{' >"$folder/scenes/m-broken <b>/meta_data.json"
 for i in 1 2; do
-  "$binary" synthesize "$([ "$i" = 1 ] && echo box || echo plate-holes)" --views 12 --resolution 160 \
+  "$binary" synthesize "$([ "$i" = 1 ] && echo box || echo l-bracket)" --views 12 --resolution 160 \
     --outputs none --quiet --seed "$i" --out "$folder/scenes/s$i" >/dev/null
 done
 "$binary" batch "$folder/scenes" --preset fast -q --out "$folder/results" >/dev/null 2>&1 || [ $? = 6 ]

@@ -73,7 +73,7 @@ TEST_F(BoxHole, TheReportTellsWhatHappened) {
   for (const StageReport& s : result_->report.stages) stages.push_back(s.name);
   ASSERT_GE(stages.size(), 5u);
   EXPECT_EQ(stages.front(), "detect");
-  EXPECT_EQ(stages.back(), "close solid");
+  EXPECT_EQ(stages.back(), "complete");
   const auto count = [&](const std::string& name) {
     for (const auto& [key, value] : result_->report.counts)
       if (key == name) return value;

@@ -128,6 +128,35 @@ TEST_F(SolidsOfImages, AreThePartForAnyNumberOfThreads) {
   EXPECT_NEAR(double(solid["volume"]), double(told["volume"]), 1e-6);
 }
 
+// Eight small pictures leave edges out that the faces of the others imply.
+TEST_F(Solids, TheirEdgesCompleteTheSketch) {
+  const std::string scene = in_folder("scene");
+  ASSERT_EQ(run("synthesize l-bracket --views 8 --resolution 240 --outputs none --quiet --out '" +
+                scene + "'")
+                .status,
+            0);
+  const auto result = [&](const std::string& name, const std::string& options) {
+    const std::string out = in_folder(name);
+    EXPECT_EQ(run("reconstruct '" + scene + "' --overlays 0 --quiet --out '" + out + "'" + options)
+                  .status,
+              0);
+    int inferred = 0;
+    const json sketch = json::parse(text_of_file(out + "/sketch.json"));
+    for (const json& stroke : sketch["strokes"])
+      inferred += stroke.value("inferred", false) && stroke["support_views"] == 0;
+    const json numbers = compared(" --pred '" + out + "' --gt '" + scene + "'");
+    return std::pair(inferred, double(numbers["structure"]["f"]));
+  };
+  const auto [none, f_seen] = result("off", " --solid off");
+  const auto [left_out, f_left] = result("seen", " --no-inferred");
+  const auto [some, f_all] = result("all", "");
+  EXPECT_EQ(none, 0);
+  EXPECT_EQ(left_out, 0);
+  EXPECT_GT(some, 0);
+  EXPECT_NEAR(f_left, f_seen, 1e-9);
+  EXPECT_GT(f_all, f_seen + 5);
+}
+
 TEST_F(SolidsOfImages, HaveTablesInTheUnit) {
   ASSERT_EQ(reconstruct("result", "--scale 40 --unit cm"), 0);
   const json told = report("result");

@@ -118,17 +118,16 @@ Loop reversed(const Loop& loop) {
 
 }  // namespace
 
-bool assemble(const Sketch& sketch, const std::vector<bool>& inferred,
-              const std::vector<Matrix3Xd>& polylines, const std::vector<SurfaceStrokes>& surfaces,
-              const std::vector<Cell>& cells, const ChosenCells& chosen, Solid* solid,
-              std::string* why) {
+bool assemble(const Completed& all, const std::vector<Cell>& cells, const ChosenCells& chosen,
+              Solid* solid, std::vector<int>* edge_of, std::string* why) {
+  const std::vector<SurfaceStrokes>& surfaces = all.surfaces;
   std::vector<Patch> patches;
   for (int i = 0; i < int(surfaces.size()); ++i) {
     std::vector<const Cell*> own;
     for (size_t c = 0; c < cells.size(); ++c)
       if (cells[c].surface == i && chosen.cell[c]) own.push_back(&cells[c]);
     if (own.empty()) continue;
-    for (const Cell& cell : merged(sketch, polylines, surfaces[i], i, own))
+    for (const Cell& cell : merged(all.sketch, all.polylines, surfaces[i], i, own))
       patches.push_back({surfaces[i].surface, layout_of(surfaces[i]), cell});
   }
   std::vector<int> part;
@@ -136,19 +135,19 @@ bool assemble(const Sketch& sketch, const std::vector<bool>& inferred,
     *why = patches.empty() ? "no faces close" : "faces cannot be told inside from outside";
     return false;
   }
-  turn_outwards(part, largest_extent(sketch), &patches);
+  turn_outwards(part, largest_extent(all.sketch), &patches);
 
-  std::vector<bool> keep(sketch.size());
+  std::vector<bool> keep(all.sketch.size());
   for (const Patch& p : patches)
     for (const HalfEdge& h : half_edges(p.cell)) keep[h.first] = true;
-  std::vector<int> index(sketch.size(), -1);
+  edge_of->assign(all.sketch.size(), -1);
   *solid = Solid();
-  for (int s = 0; s < sketch.size(); ++s)
+  for (int s = 0; s < all.sketch.size(); ++s)
     if (keep[s]) {
-      index[s] = int(solid->inferred.size());
-      solid->inferred.push_back(inferred[s]);
+      (*edge_of)[s] = int(solid->inferred.size());
+      solid->inferred.push_back(all.origin[s] != EdgeOrigin::kSeen);
     }
-  solid->edges = keep_strokes(sketch, keep);
+  solid->edges = keep_strokes(all.sketch, keep);
   std::map<int, int> surface_index;
   for (const Patch& p : patches) {
     const auto [it, first] = surface_index.emplace(p.cell.surface, int(solid->surfaces.size()));
@@ -156,7 +155,7 @@ bool assemble(const Sketch& sketch, const std::vector<bool>& inferred,
     SolidFace face{it->second, p.turned, {}};
     for (const Loop& loop : p.cell.loops) {
       face.loops.push_back(p.turned ? reversed(loop) : loop);
-      for (LoopStroke& s : face.loops.back()) s.stroke = index[s.stroke];
+      for (LoopStroke& s : face.loops.back()) s.stroke = (*edge_of)[s.stroke];
     }
     solid->faces.push_back(face);
   }

@@ -209,25 +209,27 @@ class Search {
     out.rays = int(evidence_.rays.size());
     out.contradicted = contradicted(weighed, best.cell);
     Solid solid, other;
-    if (!boundary(choice, best, &solid, &out.why)) return out;
+    std::vector<int> edge_of;
+    if (!assemble(all_, choice.cells, best, &solid, &edge_of, &out.why)) return out;
     out.faces = int(solid.faces.size());
     const ChosenCells second = choose_cells(choice, {best}, options_.nodes);
     out.margin = second.price - best.price;
     out.why = objection(out);
     std::string none;
-    if (out.why.empty())
+    if (out.why.empty()) {
       out.solid = std::move(solid);
-    else if (!contradicts(out) && boundary(choice, second, &other, &none))
+      note_edges(edge_of, &out);
+    } else if (!contradicts(out) && assemble(all_, choice.cells, second, &other, &edge_of, &none))
       out.shell = sure_faces(solid, other, all_, left_);
     return out;
   }
 
-  bool boundary(const CellChoice& choice, const ChosenCells& chosen, Solid* solid,
-                std::string* why) const {
-    std::vector<bool> inferred;
-    for (const EdgeOrigin origin : all_.origin) inferred.push_back(origin != EdgeOrigin::kSeen);
-    return assemble(all_.sketch, inferred, all_.polylines, all_.surfaces, choice.cells, chosen,
-                    solid, why);
+  // What became of the strokes that were given. `edge_of`: of those that they were completed to.
+  void note_edges(const std::vector<int>& edge_of, SolidSearch* out) const {
+    out->edge_of.assign(sketch_.size(), -1);
+    for (int s = 0; s < sketch_.size(); ++s)
+      for (const int now : all_.now[s])
+        if (out->edge_of[s] < 0) out->edge_of[s] = edge_of[now];
   }
 
   // More masks than a few that are ragged.
@@ -298,9 +300,9 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
     if (!found[i].doubtful.empty()) found.push_back(searches[i].with_copies());
   SolidSearch& last = found.back().solid ? found.back() : found.front();
   if (last.solid) {
-    const Sketch before = last.solid->edges;
+    last.as_seen = last.solid->edges;
     adjust(&*last.solid);
-    if (farthest_move(before, *last.solid) > 3 * tolerance) {
+    if (farthest_move(last.as_seen, *last.solid) > 3 * tolerance) {
       last.solid.reset();
       last.why = "curves would have to move far to lie on their faces";
     }

@@ -29,7 +29,9 @@ struct SolidOptions {
 
 struct SolidSearch {
   std::optional<Solid> solid;
-  std::string why;  ///< if there is none: a clause
+  Sketch as_seen;            ///< the solid's edges before they were moved onto its faces
+  std::string why;           ///< if there is none: a clause
+  std::vector<int> edge_of;  ///< per stroke: its edge of the solid, the first if it was cut, or -1
   /// If there is none, and no mask says otherwise: the faces that the second-best choice has, too,
   /// but those on surfaces that hold doubtful strokes. They need not close.
   std::optional<Solid> shell;

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/method/complete_sketch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "pipelines/adjust/polish.h"
+#include "sketches/curve/curve_chain.h"
+#include "topology/core/passes.h"
+#include "topology/solid/sharp_edges.h"
+
+namespace sketchsplat {
+namespace {
+
+// Of the solids that were written for made parts so many are right, see docs/solid.md.
+constexpr double kRightSolids = 0.98;
+
+// That an edge is one which only the solid tells of.
+double implied_probability(const SolidSearch& found) {
+  return kRightSolids / (1 + std::exp(-found.margin));
+}
+
+// Relations between strokes, of which some went into others and some are gone.
+std::vector<Regularity> moved(std::vector<Regularity> kept, const std::vector<int>& now) {
+  for (Regularity& r : kept) {
+    std::vector<int> strokes;
+    for (const int s : r.strokes)
+      if (now[s] >= 0 && std::find(strokes.begin(), strokes.end(), now[s]) == strokes.end())
+        strokes.push_back(now[s]);
+    r.strokes = std::move(strokes);
+  }
+  kept.erase(std::remove_if(kept.begin(), kept.end(),
+                            [](const Regularity& r) { return r.strokes.size() < 2; }),
+             kept.end());
+  return kept;
+}
+
+// Pieces of one curve, as a stroke and the rest of it that was inferred, become one.
+SharpEdges joined(SharpEdges edges, const EdgeWorld& world) {
+  TopologyOptions options;
+  options.footprint = world.footprint;
+  PassResult merged = merge_collinear(edges.sketch, options);
+  SharpEdges out;
+  out.sketch = std::move(merged.sketch);
+  out.bent = edges.bent;
+  out.inferred.assign(out.sketch.size(), true);
+  for (size_t s = 0; s < edges.inferred.size(); ++s)
+    if (merged.remap.stroke[s] >= 0 && !edges.inferred[s])
+      out.inferred[merged.remap.stroke[s]] = false;
+  for (const int s : edges.now) out.now.push_back(s < 0 ? -1 : merged.remap.stroke[s]);
+  return out;
+}
+
+// Cubics that were bent at their joints fit the edgels again.
+Sketch polished(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options) {
+  Sketch out = polish(sketch, world, last_polish(options));
+  smooth_joints(&out);
+  return out;
+}
+
+}  // namespace
+
+FinishedSketch complete_sketch(FinishedSketch finished, const SolidSearch& found,
+                               const EdgeWorld& world, const ReconstructOptions& options,
+                               RunReport* report, Progress* progress) {
+  if (!found.solid) return finished;
+  Stage stage("complete", 0, report, progress);
+  const SharpEdges edges = joined(sharp_edges(found, options.inferred), world);
+  if (edges.sketch.size() == 0) return finished;
+  finished.sketch = edges.bent ? polished(edges.sketch, world, options) : edges.sketch;
+  finished.kept = moved(std::move(finished.kept), edges.now);
+  std::vector<double> implied;
+  for (const bool inferred : edges.inferred)
+    implied.push_back(inferred ? implied_probability(found) : 0);
+  judge_strokes(world, options, implied, &finished);
+  const auto count = std::count(edges.inferred.begin(), edges.inferred.end(), true);
+  report->counts.push_back({"strokes_inferred", double(count)});
+  stage.result(std::to_string(count) + " edges inferred");
+  return finished;
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// What a solid says of the strokes that it was found by.
+#include "topology/solid/sharp_edges.h"
+
+#include <algorithm>
+
+#include "gmock/gmock.h"
+#include "sketches/curve/curve.h"
+#include "tests/topology/solids.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+using ::testing::Each;
+using ::testing::IsEmpty;
+
+Sketch box() { return box_solid({0, 0, 0}, {3, 2, 1}).edges; }
+
+Sketch without(const Sketch& sketch, int stroke) {
+  std::vector<bool> keep(sketch.size(), true);
+  keep[stroke] = false;
+  return keep_strokes(sketch, keep);
+}
+
+// A flat bar, square to z, that ends in an arc between `low` and `high`, both at x = 1. Strokes 0
+// to 3 lie at height 0, the second one of which is the arc, 4 to 7 at height 1; then the two
+// corners.
+Sketch tongue(const Vector3d& low, const Vector3d& high, double apex) {
+  SolidMaker m;
+  for (const double z : {0.0, 1.0}) {
+    const Vector3d up(0, 0, z);
+    const int a = m.node(Vector3d(-2, low.y(), 0) + up), b = m.node(low + up),
+              c = m.node(high + up), d = m.node(Vector3d(-2, high.y(), 0) + up);
+    m.line(a, b);
+    m.arc(b, c, Vector3d(apex, 0, z));
+    m.line(c, d);
+    m.line(d, a);
+  }
+  m.line(0, 4);
+  m.line(3, 7);
+  return m.solid.edges;
+}
+
+TEST(SharpEdges, AnEdgeThatNoImageShowsIsAddedIfAskedFor) {
+  for (int s = 0; s < 12; ++s) {
+    const SolidSearch found = find_solid(without(box(), s));
+    ASSERT_TRUE(found.solid) << found.why;
+    const SharpEdges all = sharp_edges(found, true), seen = sharp_edges(found, false);
+    EXPECT_EQ(all.sketch.size(), 12);
+    EXPECT_EQ(std::count(all.inferred.begin(), all.inferred.end(), true), 1);
+    EXPECT_THAT(validate(all.sketch), IsEmpty());
+    EXPECT_EQ(seen.sketch.size(), 11);
+    EXPECT_THAT(seen.inferred, Each(false));
+  }
+}
+
+TEST(SharpEdges, WhereARoundRunsSmoothlyIntoAFlatThereIsNoEdge) {
+  const SolidSearch found = find_solid(tongue({1, -1, 0}, {1, 1, 0}, 2));
+  ASSERT_TRUE(found.solid) << found.why;
+  EXPECT_EQ(found.solid->edges.size(), 12);
+  EXPECT_EQ(sharp_edges(found, true).sketch.size(), 10);
+}
+
+TEST(SharpEdges, WhereARoundMeetsAFlatAtAnAngleThereIsOne) {
+  const SolidSearch found = find_solid(tongue({1, -1, 0}, {1, 1, 0}, 1.3));
+  ASSERT_TRUE(found.solid) << found.why;
+  EXPECT_EQ(sharp_edges(found, true).sketch.size(), 12);
+}
+
+TEST(SharpEdges, StrokesAreFoundAgain) {
+  // The same edge twice, a little beside.
+  Sketch twice = box();
+  const Stroke first = twice.strokes[0];
+  const Vector3d aside = 4e-3 * Vector3d(1, 1, 1);
+  const int a = twice.add_node(twice.nodes.col(first.begin) + aside),
+            b = twice.add_node(twice.nodes.col(first.end) + aside);
+  twice.add_stroke(StrokeKind::kLine, a, b, {});
+  const SolidSearch found = find_solid(twice);
+  ASSERT_TRUE(found.solid) << found.why;
+  EXPECT_EQ(found.twice, 1);
+  const SharpEdges edges = sharp_edges(found, true);
+  EXPECT_EQ(edges.sketch.size(), 12);
+  ASSERT_EQ(edges.now.size(), 13u);
+  EXPECT_TRUE(edges.now[0] == -1 || edges.now[12] == -1) << "one of the two is the edge";
+  for (int s = 1; s < 12; ++s) {
+    ASSERT_GE(edges.now[s], 0);
+    const ControlPoints was = control_points(twice, s),
+                        is = control_points(edges.sketch, edges.now[s]);
+    EXPECT_LT((was.p[0] - is.p[0]).norm() + (was.p[1] - is.p[1]).norm(), 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace sketchsplat

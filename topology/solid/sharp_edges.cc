@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "topology/solid/sharp_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "sketches/curve/curve.h"
+#include "sketches/curve/curve_chain.h"
+#include "topology/solid/surface.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Vector3d;
+
+// Where a line runs smoothly into an arc is known to a few pixels along them, so that round faces
+// that touch others come out at an angle of less than this to them.
+constexpr double kTouchingDeg = 30;
+// A curve in which two faces meet has no corners where nothing else begins. Cubics that were fitted
+// one by one meet at less than this.
+constexpr double kCubicsDeg = 30;
+constexpr double kSameHandles = 1e-6;  // relative
+
+// Of every edge, whether the faces on its two sides, one of them round, touch.
+std::vector<bool> touching(const Solid& solid) {
+  std::map<int, std::vector<const SolidFace*>> sides;
+  for (const SolidFace& face : solid.faces)
+    for (const Loop& loop : face.loops)
+      for (const LoopStroke& s : loop) sides[s.stroke].push_back(&face);
+  const auto outwards = [&](const SolidFace& face, const Vector3d& p) -> Vector3d {
+    return (face.reversed ? -1 : 1) * surface_normal(solid.surfaces[face.surface], p);
+  };
+  std::vector<bool> out(solid.inferred.size());
+  Vector3d p, d;
+  for (const auto& [stroke, faces] : sides) {
+    const SolidFace &one = *faces.front(), &other = *faces.back();
+    double most = 0;
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      evaluate_stroke(solid.edges, stroke, t, &p, &d);
+      const Vector3d a = outwards(one, p), b = outwards(other, p);
+      most = std::max(most, std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI);
+    }
+    const bool flat = solid.surfaces[one.surface].kind == SurfaceKind::kPlane &&
+                      solid.surfaces[other.surface].kind == SurfaceKind::kPlane;
+    out[stroke] = !flat && most < kTouchingDeg;
+  }
+  return out;
+}
+
+}  // namespace
+
+SharpEdges sharp_edges(const SolidSearch& found, bool with_inferred) {
+  Solid solid = *found.solid;
+  solid.edges = found.as_seen;
+  smooth_joints(&solid.edges, kCubicsDeg);
+  SharpEdges out;
+  out.bent = !solid.edges.handles.isApprox(found.as_seen.handles, kSameHandles);
+  const std::vector<bool> touch = touching(solid);
+  std::vector<bool> keep;
+  std::vector<int> index;
+  for (size_t e = 0; e < solid.inferred.size(); ++e) {
+    keep.push_back(!solid.inferred[e] || (with_inferred && !touch[e]));
+    index.push_back(keep.back() ? int(out.inferred.size()) : -1);
+    if (keep.back()) out.inferred.push_back(solid.inferred[e]);
+  }
+  out.sketch = keep_strokes(solid.edges, keep);
+  for (const int e : found.edge_of) out.now.push_back(e < 0 ? -1 : index[e]);
+  return out;
+}
+
+}  // namespace sketchsplat
