@@ -16,10 +16,23 @@ namespace {
 
 // Of the solids that were written for made parts so many are right, see docs/solid.md.
 constexpr double kRightSolids = 0.98;
+// Of the ends of edges between faces that are sure from where they were seen.
+constexpr double kReachPx = 3;
 
 // That an edge is one which only the solid tells of.
 double implied_probability(const SolidSearch& found) {
   return kRightSolids / (1 + std::exp(-found.margin));
+}
+
+// Without a solid: are there faces that explain most of the strokes?
+bool is_sure(const SolidSearch& found, const Sketch& sketch) {
+  return found.shell && int(2 * found.doubtful.size()) < sketch.size();
+}
+
+SharpEdges edges_of(const SolidSearch& found, const Sketch& sketch, const EdgeWorld& world,
+                    const ReconstructOptions& options) {
+  if (found.solid) return sharp_edges(found, options.inferred);
+  return with_sure_edges(sketch, found, kReachPx * world.footprint);
 }
 
 // Relations between strokes, of which some went into others and some are gone.
@@ -65,9 +78,10 @@ Sketch polished(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 FinishedSketch complete_sketch(FinishedSketch finished, const SolidSearch& found,
                                const EdgeWorld& world, const ReconstructOptions& options,
                                RunReport* report, Progress* progress) {
-  if (!found.solid) return finished;
+  const bool sure = options.inferred && is_sure(found, finished.sketch);
+  if (!found.solid && !sure) return finished;
   Stage stage("complete", 0, report, progress);
-  const SharpEdges edges = joined(sharp_edges(found, options.inferred), world);
+  const SharpEdges edges = joined(edges_of(found, finished.sketch, world, options), world);
   if (edges.sketch.size() == 0) return finished;
   finished.sketch = edges.bent ? polished(edges.sketch, world, options) : edges.sketch;
   finished.kept = moved(std::move(finished.kept), edges.now);

@@ -91,5 +91,36 @@ TEST(SharpEdges, StrokesAreFoundAgain) {
   }
 }
 
+// A box of 4 x 3 x 2 with a square in its top of which nothing tells how deep it goes.
+Sketch box_with_rim() {
+  SolidMaker m;
+  m.solid.edges = box_solid({-2, -1.5, 0}, {2, 1.5, 2}).edges;
+  m.solid.inferred.assign(12, false);
+  std::vector<int> n;
+  for (const auto& [x, y] : {std::pair(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
+    n.push_back(m.node({x, y, 2}));
+  for (int i = 0; i < 4; ++i) m.line(n[size_t(i)], n[size_t(i + 1) % 4]);
+  return m.solid.edges;
+}
+
+TEST(SharpEdges, BetweenFacesThatAreSureTheyAreAddedWithoutASolid) {
+  for (int s = 0; s < 12; ++s) {
+    const Sketch seen = without(box_with_rim(), s);
+    const SolidSearch found = find_solid(seen);
+    EXPECT_FALSE(found.solid);
+    ASSERT_TRUE(found.shell) << found.why;
+    const ControlPoints was = control_points(box_with_rim(), s);
+    const bool of_the_top = was.p[0].z() == 2 && was.p[1].z() == 2;
+    const SharpEdges all = with_sure_edges(seen, found, 0.01);
+    ASSERT_EQ(all.sketch.size(), of_the_top ? 15 : 16) << "what the top does nobody knows";
+    EXPECT_THAT(validate(all.sketch), IsEmpty());
+    if (of_the_top) continue;
+    EXPECT_TRUE(all.inferred.back());
+    const ControlPoints is = control_points(all.sketch, 15);
+    EXPECT_LT(std::min((was.p[0] - is.p[0]).norm(), (was.p[0] - is.p[1]).norm()), 1e-9);
+    EXPECT_EQ(all.sketch.nodes.cols(), seen.nodes.cols()) << "its ends are nodes of others";
+  }
+}
+
 }  // namespace
 }  // namespace sketchsplat

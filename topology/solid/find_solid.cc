@@ -162,17 +162,12 @@ bool holds_left(const Completed& all, const std::vector<bool>& left, const Surfa
   return false;
 }
 
-// Faces of the best choice that the second-best one has, too, and that leave no stroke open.
-std::optional<Solid> sure_faces(const Solid& best, const Solid& second, const Completed& all,
-                                const std::vector<bool>& left) {
-  const Solid common = common_faces(best, second);
+// Faces that leave no stroke open.
+Solid without_left(const Solid& solid, const Completed& all, const std::vector<bool>& left) {
   std::vector<bool> explained;
-  for (const SolidFace& face : common.faces)
-    explained.push_back(!holds_left(all, left, common.surfaces[face.surface]));
-  Solid shell = keep_faces(common, explained);
-  if (shell.faces.empty()) return std::nullopt;
-  adjust(&shell);
-  return shell;
+  for (const SolidFace& face : solid.faces)
+    explained.push_back(!holds_left(all, left, solid.surfaces[face.surface]));
+  return keep_faces(solid, explained);
 }
 
 // One search: with edges that surfaces imply, or with copies of loops and strokes seen twice, too.
@@ -208,19 +203,19 @@ class Search {
     note_left(best, &out);
     out.rays = int(evidence_.rays.size());
     out.contradicted = contradicted(weighed, best.cell);
-    Solid solid, other;
+    Solid solid;
     std::vector<int> edge_of;
     if (!assemble(all_, choice.cells, best, &solid, &edge_of, &out.why)) return out;
     out.faces = int(solid.faces.size());
     const ChosenCells second = choose_cells(choice, {best}, options_.nodes);
     out.margin = second.price - best.price;
     out.why = objection(out);
-    std::string none;
     if (out.why.empty()) {
       out.solid = std::move(solid);
       note_edges(edge_of, &out);
-    } else if (!contradicts(out) && assemble(all_, choice.cells, second, &other, &edge_of, &none))
-      out.shell = sure_faces(solid, other, all_, left_);
+    } else if (!contradicts(out)) {
+      note_shell(solid, choice, second, &out);
+    }
     return out;
   }
 
@@ -230,6 +225,23 @@ class Search {
     for (int s = 0; s < sketch_.size(); ++s)
       for (const int now : all_.now[s])
         if (out->edge_of[s] < 0) out->edge_of[s] = edge_of[now];
+  }
+
+  // The faces of a choice that are sure, if any are.
+  void note_shell(const Solid& best, const CellChoice& choice, const ChosenCells& second,
+                  SolidSearch* out) const {
+    Solid sure = best, other;
+    std::vector<int> edge_of;
+    std::string why;
+    if (out->margin < options_.margin) {
+      if (!assemble(all_, choice.cells, second, &other, &edge_of, &why)) return;
+      sure = common_faces(best, other);
+    }
+    sure = without_left(sure, all_, left_);
+    if (sure.faces.empty()) return;
+    out->as_seen = sure.edges;
+    adjust(&sure);
+    out->shell = std::move(sure);
   }
 
   // More masks than a few that are ragged.

@@ -29,11 +29,12 @@ struct SolidOptions {
 
 struct SolidSearch {
   std::optional<Solid> solid;
-  Sketch as_seen;            ///< the solid's edges before they were moved onto its faces
+  Sketch as_seen;            ///< edges of the solid or shell before they were moved onto its faces
   std::string why;           ///< if there is none: a clause
   std::vector<int> edge_of;  ///< per stroke: its edge of the solid, the first if it was cut, or -1
-  /// If there is none, and no mask says otherwise: the faces that the second-best choice has, too,
-  /// but those on surfaces that hold doubtful strokes. They need not close.
+  /// If there is none, and no mask says otherwise: the faces of the choice - where the second-best
+  /// one is about as good, those that it has, too - but those on surfaces that hold doubtful
+  /// strokes. They need not close.
   std::optional<Solid> shell;
   int faces = 0;              ///< of the best choice
   std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending

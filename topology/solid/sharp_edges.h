@@ -19,4 +19,8 @@ struct SharpEdges {
 /// which are none to the eye. `with_inferred`: those that no image shows, too.
 SharpEdges sharp_edges(const SolidSearch& found, bool with_inferred);
 
+/// Of a search that found faces which are sure, but no solid: the sketch as it is, with the edges
+/// between two of these faces that no image shows. Their ends share the nodes within `reach`.
+SharpEdges with_sure_edges(const Sketch& sketch, const SolidSearch& found, double reach);
+
 }  // namespace sketchsplat
