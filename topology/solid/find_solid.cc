@@ -184,11 +184,12 @@ class Search {
 
   SolidSearch plain() { return run(std::vector<bool>(all_.seen.size())); }
 
-  // `plain` was tried, and left strokes over.
-  SolidSearch with_copies() {
-    copy_loops(left_, tolerance_, slide_, &all_);
-    return run(left_);
+  // `plain` was tried, and left strokes over: is there something else to try?
+  bool has_more() {
+    const bool copied = copy_loops(left_, tolerance_, slide_, &all_);
+    return copied || !doubles_of(all_.sketch, left_, 3 * tolerance_).empty();
   }
+  SolidSearch with_copies() { return run(left_); }
 
  private:
   // `left` by an earlier choice: strokes that may be others seen twice.
@@ -309,7 +310,8 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   }
   const bool many = found.front().surfaces > options.many_surfaces;
   for (size_t i = 0; i < searches.size() && !many && !found.back().solid; ++i)
-    if (!found[i].doubtful.empty()) found.push_back(searches[i].with_copies());
+    if (!found[i].doubtful.empty() && searches[i].has_more())
+      found.push_back(searches[i].with_copies());
   SolidSearch& last = found.back().solid ? found.back() : found.front();
   if (last.solid) {
     last.as_seen = last.solid->edges;
