@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eval/metrics/structure.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -40,12 +41,37 @@ std::vector<bool> joined_flags(std::vector<bool> a, std::vector<bool> b, bool tu
   return a;
 }
 
+// Distance of a point from the circle through the ends and the middle of an arc, whose ends are
+// apart; from their line if there is no such circle.
+double distance_to_circle(const Eigen::Matrix3Xd& arc, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d a = arc.col(0), u = arc.col(arc.cols() / 2) - a, v = arc.rightCols<1>() - a,
+                        n = u.cross(v);
+  if (n.norm() < 1e-9 * u.norm() * v.norm()) return (p - a).cross(v.normalized()).norm();
+  const Eigen::Vector3d centre =
+      a + (u.squaredNorm() * v - v.squaredNorm() * u).cross(n) / (2 * n.squaredNorm());
+  const Eigen::Vector3d from = p - centre;
+  const double height = from.dot(n.normalized());
+  return std::hypot((from - height * n.normalized()).norm() - (a - centre).norm(), height);
+}
+
+// Are two arcs pieces of one circle? Small ones say little of the other's circle.
+bool one_circle(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  const bool a_longer = polyline_length(a) > polyline_length(b);
+  const Eigen::Matrix3Xd &longer = a_longer ? a : b, &shorter = a_longer ? b : a;
+  if ((longer.col(0) - longer.rightCols<1>()).norm() < kMeeting) return false;
+  for (int i = 0; i < shorter.cols(); ++i)
+    if (distance_to_circle(longer, shorter.col(i)) > kMeeting) return false;
+  return true;
+}
+
 // Joins edge j to edge i if they continue each other one way or another.
 bool join(std::vector<TrueEdge>* edges, size_t i, size_t j) {
   TrueEdge& first = (*edges)[i];
   const TrueEdge& second = (*edges)[j];
   if (first.type != second.type) return false;
   if (first.polyline.cols() < 2 || second.polyline.cols() < 2) return false;
+  const bool arcs = first.type == "circle" || first.type == "arc";
+  if (arcs && !one_circle(first.polyline, second.polyline)) return false;
   const double limit = std::cos((first.type == "line" ? 4 : 12) * M_PI / 180);
   const auto end_of = [](const Eigen::Matrix3Xd& p, bool last) -> Eigen::Vector3d {
     return p.col(last ? p.cols() - 1 : 0);

@@ -21,7 +21,8 @@ struct TrueEdge {
 
 /// Joins edges of one type that continue each other where nothing else ends, because files cut a
 /// circle into arcs and a long line into pieces: ends within 0.002, directions within 4 degrees
-/// (lines) or 12 (other types, whose first and last chords are not their tangents).
+/// (lines) or 12 (other types, whose first and last chords are not their tangents). Arcs of two
+/// circles, as of the outline of a bent slot, stay two.
 std::vector<TrueEdge> merge_smooth(std::vector<TrueEdge> edges);
 
 /// Points where ends meet, compared with those of the truth. Shares are per cent.

@@ -32,6 +32,14 @@ TEST(MergeSmooth, JoinsTwoHalvesOfACircleWhicheverWayTheyRun) {
   EXPECT_EQ(merge_smooth({{"circle", arc(180, 0, 36)}, {"circle", arc(180, 360, 36)}}).size(), 1u);
 }
 
+TEST(MergeSmooth, KeepsArcsOfTwoCirclesThatRunIntoOneAnother) {
+  Eigen::Matrix3Xd other = 0.5 * arc(180, 270, 36);
+  other.row(0).array() -= 0.15;
+  ASSERT_LT((other.col(0) - arc(0, 180, 36).rightCols<1>()).norm(), 1e-9);
+  EXPECT_EQ(merge_smooth({{"arc", arc(0, 180, 36)}, {"arc", other}}).size(), 2u);
+  EXPECT_EQ(merge_smooth({{"bspline", arc(0, 180, 36)}, {"bspline", other}}).size(), 1u);
+}
+
 TEST(MergeSmooth, JoinsPiecesOfALine) {
   const auto joined = merge_smooth({{"line", segment({0, 0, 0}, {0.4, 0, 0})},
                                     {"line", segment({1, 0, 0}, {0.7, 0, 0})},
