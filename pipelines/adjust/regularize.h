@@ -24,7 +24,7 @@ struct RegularizeOptions {
 struct Regularized {
   Sketch sketch;
   std::vector<Regularity> kept;
-  int relations = 0;      ///< that were imposed
+  Relations imposed;
   double nats_saved = 0;  ///< by which the description became shorter
 };
 

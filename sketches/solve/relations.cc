@@ -100,6 +100,14 @@ struct RelationResidual {
         r[2] = scale * (n.dot(middle) - p[own + 1][0]);
         return true;
       }
+      case RelationKind::kApart: {
+        const T gap = own > 0 ? (Vec3<T>(Block<T>(p[1])) - Vec3<T>(Block<T>(p[0])))
+                                    .cross(first.normalized())
+                                    .norm()
+                              : p[2][0] - p[1][0];
+        r[0] = scale * (gap - T(relation.distance));
+        return true;
+      }
     }
     return false;
   }
@@ -135,8 +143,8 @@ Cost* make_cost(const Sketch& sketch, const Relations& relations, const Relation
 }  // namespace
 
 const char* relation_name(RelationKind kind) {
-  constexpr const char* kNames[] = {"parallel", "perpendicular", "coplanar",
-                                    "coaxial",  "equal_radius",  "symmetric"};
+  constexpr const char* kNames[] = {"parallel",     "perpendicular", "coplanar", "coaxial",
+                                    "equal_radius", "symmetric",     "apart"};
   return kNames[int(kind)];
 }
 

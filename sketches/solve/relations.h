@@ -19,6 +19,7 @@ struct SharedQuantity {
   SharedKind kind = SharedKind::kDirection;
   int direction = -1;  ///< plane and axis: the shared direction that is normal to it, or along it
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  bool fixed = false;  ///< it is known, and not estimated
 };
 
 /// How one stroke or point keeps to a shared quantity:
@@ -28,30 +29,34 @@ struct SharedQuantity {
 ///   coaxial        the centre of an arc, circle or ellipse on a shared axis      2
 ///   equal radius   of an arc or a circle                                         1
 ///   symmetric      two points that mirror one another in a shared plane          3
+///   apart          two planes of one direction, or two points across a           1
+///                  direction (of two lines along it), at a given distance
 enum class RelationKind {
   kParallel,
   kPerpendicular,
   kCoplanar,
   kCoaxial,
   kEqualRadius,
-  kSymmetric
+  kSymmetric,
+  kApart
 };
-constexpr int kRelationKinds = 6;
+constexpr int kRelationKinds = 6;  ///< that are found in sketches: all but the last
 const char* relation_name(RelationKind kind);
 
 struct Relation {
   RelationKind kind = RelationKind::kParallel;
   int shared = -1;  ///< index of the quantity
-  int other = -1;   ///< perpendicular: the second direction
+  int other = -1;   ///< perpendicular, apart: the second direction or plane
   int stroke = -1;  ///< parallel, coaxial, equal radius
-  int point = -1;   ///< coplanar, symmetric: a node, or the number of nodes plus a handle
-  int twin = -1;    ///< symmetric: the other point
+  int point = -1;   ///< coplanar, symmetric, apart: a node, or the number of nodes plus a handle
+  int twin = -1;    ///< symmetric, apart: the other point
   /// Parallel, coaxial, symmetric: unit vectors across the direction, in which residuals are
   /// stated.
   Eigen::Matrix<double, 2, 3> across = Eigen::Matrix<double, 2, 3>::Zero();
   double sign = 1;   ///< parallel: -1 if the stroke runs against the direction
   double scale = 1;  ///< [px per unit of the residual], the unit being a radian or a world length
   double sigma = 1;  ///< [px] standard deviation at which it is imposed
+  double distance = 0;  ///< apart: world units
 };
 
 struct Relations {

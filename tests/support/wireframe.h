@@ -9,8 +9,10 @@
 
 namespace sketchsplat::test {
 
-/// Cameras on a Fibonacci sphere that look at `target` from `distance`; 400 x 400 px, focal 500 px.
-inline std::vector<View> ring_of_views(int count, const Eigen::Vector3d& target, double distance) {
+/// Cameras on a Fibonacci sphere that look at `target` from `distance`; 400 x 400 px, focal
+/// 500 px, or `side` px and as much more.
+inline std::vector<View> ring_of_views(int count, const Eigen::Vector3d& target, double distance,
+                                       int side = 400) {
   std::vector<View> views;
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, a = i * M_PI * (3 - std::sqrt(5.0));
@@ -22,7 +24,8 @@ inline std::vector<View> ring_of_views(int count, const Eigen::Vector3d& target,
     const Eigen::Vector3d right = forward.cross(up).normalized();
     View v;
     v.name = std::to_string(i);
-    v.camera = {400, 400, 500, 500, 199.5, 199.5};
+    const double focal = 1.25 * side, centre = (side - 1) / 2.0;
+    v.camera = {side, side, focal, focal, centre, centre};
     v.cam_from_world.rotation.row(0) = right;
     v.cam_from_world.rotation.row(1) = forward.cross(right);
     v.cam_from_world.rotation.row(2) = forward;
