@@ -36,8 +36,9 @@ SharpEdges edges_of(const SolidSearch& found, const Sketch& sketch, const EdgeWo
 }
 
 // Relations between strokes, of which some went into others and some are gone.
-std::vector<Regularity> moved(std::vector<Regularity> kept, const std::vector<int>& now) {
-  for (Regularity& r : kept) {
+template <typename T>
+std::vector<T> moved(std::vector<T> kept, size_t least, const std::vector<int>& now) {
+  for (T& r : kept) {
     std::vector<int> strokes;
     for (const int s : r.strokes)
       if (now[s] >= 0 && std::find(strokes.begin(), strokes.end(), now[s]) == strokes.end())
@@ -45,7 +46,7 @@ std::vector<Regularity> moved(std::vector<Regularity> kept, const std::vector<in
     r.strokes = std::move(strokes);
   }
   kept.erase(std::remove_if(kept.begin(), kept.end(),
-                            [](const Regularity& r) { return r.strokes.size() < 2; }),
+                            [&](const T& r) { return r.strokes.size() < least; }),
              kept.end());
   return kept;
 }
@@ -83,8 +84,11 @@ FinishedSketch complete_sketch(FinishedSketch finished, const SolidSearch& found
   Stage stage("complete", 0, report, progress);
   const SharpEdges edges = joined(edges_of(found, finished.sketch, world, options), world);
   if (edges.sketch.size() == 0) return finished;
-  finished.sketch = edges.bent ? polished(edges.sketch, world, options) : edges.sketch;
-  finished.kept = moved(std::move(finished.kept), edges.now);
+  // Lengths that were set are worth more than joints that are smooth.
+  const bool again = edges.bent && finished.snap.snaps.empty();
+  finished.sketch = again ? polished(edges.sketch, world, options) : edges.sketch;
+  finished.kept = moved(std::move(finished.kept), 2, edges.now);
+  finished.snap.snaps = moved(std::move(finished.snap.snaps), 1, edges.now);
   std::vector<double> implied;
   for (const bool inferred : edges.inferred)
     implied.push_back(inferred ? implied_probability(found) : 0);

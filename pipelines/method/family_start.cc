@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <sstream>
 
 #include "datasets/types/errors.h"
@@ -22,10 +23,11 @@ constexpr double kSeen = 0.6;       // of its length that the views show, at lea
 constexpr double kFreeReach = 3;    // [px] of edgels that pull at strokes that are set free
 constexpr double kFreeCover = 0.5;  // of a stroke that its views show, at least, to set it free
 
-std::vector<Sketch> read_siblings(const std::string& paths) {
+std::vector<Sketch> read_siblings(const std::string& paths, const std::string& folder) {
   std::vector<Sketch> out;
   std::istringstream lines(paths);
   for (std::string path; std::getline(lines, path);) {
+    if (!folder.empty()) path = (std::filesystem::path(folder) / path).string();
     out.push_back(read_sketch(path));
     if (out.back().size() == 0) throw InputError(sketch_file(path), "a sketch with curves", "none");
   }
@@ -85,7 +87,7 @@ FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions
                            RunReport* report, Progress* progress) {
   if (options.like.empty()) return {};
   Stage stage("family", 0, report, progress);
-  const Family family = learn_family(read_siblings(options.like));
+  const Family family = learn_family(read_siblings(options.like, options.like_folder));
   const FamilyFit fit(family, world, kFitViews);
   const Best best = best_fit(fit);
   const Freed freed = set_free(best.sketch, world, options);

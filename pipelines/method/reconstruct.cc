@@ -73,7 +73,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   sketch = drop_print(sketch, world, *detector, &report, progress);
   sketch = close_sketch(sketch, world, last, &report);
   sketch = add_missing_edges(sketch, world, last, &report, progress);
-  FinishedSketch finished = finish_sketch(sketch, world, last, &report, progress);
+  FinishedSketch finished = finish_sketch(sketch, world, tags, last, &report, progress);
   if (finished.sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   tell_stop(options, &report, progress);
@@ -87,7 +87,8 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
           view_names(world),
           posed.refined ? at_full_size(world.views, small, scene) : std::vector<View>(),
           tags,
-          solid};
+          solid,
+          snaps_by_curve(finished)};
 }
 
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,

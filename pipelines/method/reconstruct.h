@@ -5,6 +5,7 @@
 #include "edges/tags/tag_square.h"
 #include "pipelines/base/run_report.h"
 #include "pipelines/stages/options.h"
+#include "pipelines/stages/stages.h"
 #include "sketches/graph/sketch.h"
 #include "topology/solid/find_solid.h"
 
@@ -19,6 +20,7 @@ struct Reconstruction {
   std::vector<View> refined;       ///< the cameras, if they are not those of the scene; else empty
   std::vector<TagSquare> tags;     ///< that were asked for
   SolidSearch solid;               ///< what the strokes bound, or why there is none
+  SnapOutcome snap;                ///< lengths that were made standard ones
 };
 
 /// The edges of the object in the scene, at least one. Throws TooLittleError if there is none,

@@ -14,6 +14,7 @@
 #include "pipelines/pages/overlay.h"
 #include "pipelines/results/known_scale.h"
 #include "pipelines/results/report.h"
+#include "pipelines/results/snap_output.h"
 #include "pipelines/results/solid_output.h"
 #include "sketches/io/io.h"
 
@@ -108,10 +109,14 @@ std::string product_name(const Scene& scene, const std::string& otherwise) {
   return name.empty() ? otherwise : name;
 }
 
-double footprint_of(const Reconstruction& reconstruction) {
+double count_of(const Reconstruction& reconstruction, const std::string& wanted) {
   for (const auto& [name, value] : reconstruction.report.counts)
-    if (name == "footprint") return value;
+    if (name == wanted) return value;
   return 0;
+}
+
+double footprint_of(const Reconstruction& reconstruction) {
+  return count_of(reconstruction, "footprint");
 }
 
 SolidOutputOptions solid_options(const Reconstruction& reconstruction, const Scene& scene,
@@ -139,6 +144,8 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
   extra["views"] = reconstruction.views;
   if (!scale.source.empty()) extra["scale"] = Json::parse(scale_json(scale));
   if (footprint_of(reconstruction) > 0) extra["footprint"] = footprint_of(reconstruction);
+  if (count_of(reconstruction, "pose_scale_sigma") > 0)
+    extra["pose_scale_sigma"] = count_of(reconstruction, "pose_scale_sigma");
   if (reconstruction.proposed.size() > 0) {
     std::ostringstream proposed;
     write_sketch_json(proposed, reconstruction.proposed);
@@ -170,7 +177,13 @@ KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& opti
   write_sketch_json(file, reconstruction.sketch);
   const Sketch sketch = read_sketch_json(file, "sketch.json");
   try {
-    return known_scale(options, sketch, footprint_of(reconstruction), reconstruction.tags);
+    KnownScale scale =
+        known_scale(options, sketch, footprint_of(reconstruction), reconstruction.tags);
+    if (!has_reference(options) || reconstruction.snap.snaps.empty()) return scale;
+    // Standard lengths tell more of it.
+    scale.units_per_world = reconstruction.snap.scale.units_per_world;
+    scale.sigma_relative = reconstruction.snap.scale.sigma_relative;
+    return scale;
   } catch (const InputError& e) {
     warn(std::string(e.what()) + ": all lengths stay in world units", report, progress);
     KnownScale none;
@@ -206,6 +219,7 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
   {
     Stage stage("write", 0, &reconstruction.report, progress);
     scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
+    write_snaps(folder, reconstruction.snap);
     write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
     solid = write_solid(folder, reconstruction.solid,
                         solid_options(reconstruction, scene, scale, output_options));

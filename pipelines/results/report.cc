@@ -11,6 +11,7 @@
 #include "pipelines/base/version.h"
 #include "pipelines/pages/overlay.h"
 #include "pipelines/pages/page.h"
+#include "pipelines/results/snap_output.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/graph/inferred.h"
@@ -187,6 +188,8 @@ std::string report_json(const ReportInput& input) {
   json["counts"] = counts_json(input);
   if (input.scale && !input.scale->source.empty())
     json["scale"] = Json::parse(scale_json(*input.scale));
+  if (input.reconstruction->snap.asked)
+    json["snap"] = Json::parse(snap_json(input.reconstruction->snap));
   if (input.solid) json["solid"] = Json::parse(solid_json(*input.solid));
   json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;

@@ -2,6 +2,7 @@
 // The last stages: gaps closed, missing edges added, the last polish and choice.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "datasets/types/errors.h"
 #include "pipelines/stages/stages.h"
@@ -26,17 +27,18 @@ RegularizeOptions regularize_options(const ReconstructOptions& options) {
   return regularize;
 }
 
-// Relations among the strokes that stay.
-void renumber(const std::vector<bool>& stays, std::vector<Regularity>* kept) {
+// What at least so many of the strokes that stay share.
+template <typename T>
+void renumber(const std::vector<bool>& stays, size_t least, std::vector<T>* kept) {
   std::vector<int> now;
   int next = 0;
   for (const bool s : stays) now.push_back(s ? next++ : -1);
-  for (Regularity& r : *kept) {
+  for (T& r : *kept) {
     for (int& s : r.strokes) s = now[s];
     r.strokes.erase(std::remove(r.strokes.begin(), r.strokes.end(), -1), r.strokes.end());
   }
   kept->erase(std::remove_if(kept->begin(), kept->end(),
-                             [](const Regularity& r) { return r.strokes.size() < 2; }),
+                             [&](const T& r) { return r.strokes.size() < least; }),
               kept->end());
 }
 
@@ -69,6 +71,45 @@ Sketch without_improbable(Sketch sketch, int first, const EdgeWorld& world,
   for (int s = first; s < sketch.size(); ++s) keep[s] = sketch.evidence[s].confidence >= kProbable;
   *left = int(std::count(keep.begin() + first, keep.end(), true));
   return keep_strokes(sketch, keep);
+}
+
+// The scale of the strokes as they will be written.
+std::optional<StatedScale> scale_of(const Sketch& sketch, const EdgeWorld& world,
+                                    const std::vector<TagSquare>& tags,
+                                    const ReconstructOptions& options) {
+  if (!options.scale_of) return std::nullopt;
+  Sketch judged = sketch;
+  const StrokeObservation o = with_evidence(world, options, &judged);
+  record_confidence(stroke_features(judged, world, o), &judged);
+  return options.scale_of(keep_confident(judged, options.min_confidence), world.footprint, tags);
+}
+
+// With lengths that are standard ones, if the scale is known; else it says so.
+Sketch snapped(const Regularized& regular, const StrokeObservation& seen, const EdgeWorld& world,
+               const std::vector<TagSquare>& tags, const ReconstructOptions& options,
+               SnapOutcome* out, RunReport* report, Progress* progress) {
+  const std::optional<StatedScale> scale = scale_of(regular.sketch, world, tags, options);
+  if (!scale) {
+    warn("--snap " + options.snap + ": nobody says how large the part is (--unit, --scale, " +
+             "--scale-by): nothing is snapped",
+         report, progress);
+    return regular.sketch;
+  }
+  const StandardSystem system = standard_system(options.snap);
+  const LengthUnit unit =
+      system == StandardSystem::kInch ? LengthUnit::kInch : LengthUnit::kMillimetre;
+  const double factor = millimetres(scale->unit) / millimetres(unit);
+  const Snapped s = snap_to_standards(regular, seen, world.footprint,
+                                      {scale->units_per_world * factor, scale->sigma_relative},
+                                      system, regularize_options(options));
+  if (!s.why_none.empty()) warn("nothing is snapped: " + s.why_none, report, progress);
+  out->snaps = s.snaps;
+  out->hypotheses = s.hypotheses;
+  out->unit = length_unit_names()[int(unit)];
+  out->scale = *scale;
+  out->scale.units_per_world *= s.scale;
+  if (!s.snaps.empty()) out->scale.sigma_relative = s.scale_sigma;
+  return s.sketch;
 }
 
 }  // namespace
@@ -113,20 +154,27 @@ PolishOptions last_polish(const ReconstructOptions& options) {
 }
 
 FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
-                             const ReconstructOptions& options, RunReport* report,
-                             Progress* progress) {
+                             const std::vector<TagSquare>& tags, const ReconstructOptions& options,
+                             RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
   FinishedSketch out;
   out.sketch = sketch;
+  out.snap.asked = options.snap != "none";
   if (options.final_polish) {
     Observation last;
     out.sketch = polish(sketch, world, last_polish(options), &last);
-    if (options.regularize.on && last.layout.size() > 0 && !options.deadline.passed()) {
-      Regularized regular = regularize(out.sketch, with_strokes(std::move(last), world, 1),
-                                       world.footprint, regularize_options(options));
-      out.sketch = std::move(regular.sketch);
+    if (last.layout.size() > 0 && !options.deadline.passed()) {
+      const StrokeObservation seen = with_strokes(std::move(last), world, 1);
+      Regularized regular;
+      regular.sketch = out.sketch;
+      if (options.regularize.on) {
+        regular = regularize(out.sketch, seen, world.footprint, regularize_options(options));
+        report->counts.push_back({"regular_nats_saved", regular.nats_saved});
+      }
+      out.sketch = out.snap.asked
+                       ? snapped(regular, seen, world, tags, options, &out.snap, report, progress)
+                       : regular.sketch;
       out.kept = std::move(regular.kept);
-      report->counts.push_back({"regular_nats_saved", regular.nats_saved});
     }
   }
   smooth_joints(&out.sketch);
@@ -156,13 +204,26 @@ void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
     finished->features.back().push_back({"confidence", confidence});
   }
   const int before = sketch.size();
-  renumber(stays, &finished->kept);
+  renumber(stays, 2, &finished->kept);
+  renumber(stays, 1, &finished->snap.snaps);
   sketch = keep_strokes(sketch, stays);
   finished->unsure += before - sketch.size();
   finished->edgel_sigma_px = o.matches.sigma_px;
   if (before > 0 && sketch.size() == 0)
     throw TooLittleError("expected strokes as probable as --min-confidence, found " +
                          std::to_string(before) + " less probable ones");
+}
+
+SnapOutcome snaps_by_curve(const FinishedSketch& finished) {
+  SnapOutcome out = finished.snap;
+  const std::vector<int> curve =
+      chain_of_strokes(curve_chains(finished.sketch), finished.sketch.size());
+  for (Snap& snap : out.snaps) {
+    std::set<int> curves;
+    for (const int s : snap.strokes) curves.insert(curve[s]);
+    snap.strokes.assign(curves.begin(), curves.end());
+  }
+  return out;
 }
 
 void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report) {

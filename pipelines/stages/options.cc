@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "pipelines/adjust/standard_series.h"
 #include "pipelines/stages/scale_reference.h"
 
 namespace sketchsplat {
@@ -258,6 +259,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
                        "Results of siblings, parts of the same family: a start from what they have "
                        "in common");
   like.several = like.takes_more = true;
+  f->choose("snap", &o->snap, standard_system_names(),
+            "Make radii and distances standard ones where the pictures agree; needs a scale");
   list_lift(&o->lift, f);
   list_link(&o->link, f);
   list_segment(&o->segment, f);

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "edges/tags/tag_square.h"
 #include "edges/views/lift.h"
 #include "edges/views/link.h"
 #include "edges/views/match.h"
@@ -40,6 +43,17 @@ struct CommonOptions {
   std::string config, save_config;  ///< files of options, see config_file.h; empty: none
 };
 
+/// How large a world unit is, as the user says.
+struct StatedScale {
+  LengthUnit unit = LengthUnit::kMillimetre;
+  double units_per_world = 1;
+  double sigma_relative = 0;
+};
+/// What is said of a sketch with evidence, numbered as its file; `footprint`: world length of a
+/// pixel at the part. Nothing: nobody knows.
+using ScaleOf = std::function<std::optional<StatedScale>(const Sketch& sketch, double footprint,
+                                                         const std::vector<TagSquare>& tags)>;
+
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
 struct ReconstructOptions : DetectionOptions {
   std::string preset = "balanced";
@@ -62,6 +76,8 @@ struct ReconstructOptions : DetectionOptions {
   MissingOptions missing;
   CloseOptions close;
   RegularizeOptions regularize;
+  std::string snap = "none";  ///< series of standard lengths, see standard_series.h
+  ScaleOf scale_of;           ///< set by the caller, for `snap`
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
@@ -71,8 +87,9 @@ struct ReconstructOptions : DetectionOptions {
   double surfel_sigma_px = 0.25;
   /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
   double surfel_gap_price = 2;
-  std::string like;  ///< sketches of siblings, one a line; empty: none
   bool inferred = true;           ///< edges that no image shows and the solid implies
+  std::string like;         ///< sketches of siblings, one a line; empty: none
+  std::string like_folder;  ///< that these are below, if their paths are relative; not told
   double min_confidence = 0;  ///< probability below which a stroke is left out at last
   std::string box_text = "auto";  ///< as the user gives it
   Eigen::AlignedBox3d box;    ///< world units: only what is in it is the object; empty: found out

@@ -8,6 +8,7 @@
 #include "edges/tags/tag_square.h"
 #include "edges/views/lift.h"
 #include "pipelines/adjust/optimize.h"
+#include "pipelines/adjust/snap.h"
 #include "pipelines/base/run_report.h"
 #include "pipelines/stages/options.h"
 
@@ -65,6 +66,15 @@ Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const Reconstr
 Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
                          const ReconstructOptions& options, RunReport* report, Progress* progress);
 
+/// What `snap` did, in the user's words.
+struct SnapOutcome {
+  bool asked = false;
+  std::vector<Snap> snaps;
+  int hypotheses = 0;  ///< lengths that could have been standard ones
+  std::string unit;    ///< of the snaps: "mm", "inch"
+  StatedScale scale;   ///< with which they are standard ones
+};
+
 /// A sketch with what is known of it.
 struct FinishedSketch {
   Sketch sketch;                  ///< with evidence
@@ -72,15 +82,17 @@ struct FinishedSketch {
   std::vector<Numbers> features;  ///< per stroke: what its confidence was made of
   int unsure = 0;                 ///< strokes that were left out as less probable than asked for
   double edgel_sigma_px = 0;      ///< of the edgels about the strokes
+  SnapOutcome snap;               ///< lengths that were made standard ones
 };
 
 /// As the options say, but that what is nearly one curve becomes one.
 PolishOptions last_polish(const ReconstructOptions& options);
 
-/// Last polish on the edgels, regularities, and the evidence.
+/// Last polish on the edgels, regularities, standard lengths, and the evidence. `tags`: that were
+/// measured, for the scale.
 FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
-                             const ReconstructOptions& options, RunReport* report,
-                             Progress* progress);
+                             const std::vector<TagSquare>& tags, const ReconstructOptions& options,
+                             RunReport* report, Progress* progress);
 
 /// Fills in evidence and features, and leaves out strokes less probable than asked for, which
 /// throws TooLittleError if none is left. `implied`: per stroke the probability that something else
@@ -91,6 +103,9 @@ void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
 
 /// Fills the report's strokes, regularities (by curve, see curve_chain.h) and counts.
 void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report);
+
+/// The snaps, by curves instead of strokes.
+SnapOutcome snaps_by_curve(const FinishedSketch& finished);
 
 /// Edges that no view shows but the graph implies (propose.h); counts them in the report.
 Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report);

@@ -55,6 +55,41 @@ class Scale : public Program {
 };
 std::string Scale::base_, Scale::scene_, Scale::photos_, Scale::result_;
 
+TEST_F(Scale, LengthsBecomeStandardOnesWhereTheScaleIsKnownAndAreListed) {
+  const std::string command = "reconstruct " + scene_ + " --preset fast --overlays 0 --solid off";
+  const Outcome o =
+      run(command + " --snap iso --scale 100 --unit mm --out " + in_folder("snapped"));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("lengths are standard ones\n"));
+  EXPECT_THAT(o.out, HasSubstr("plane distance 100 mm (whole 10 mm), measured "));
+  const json snap = json_in(folder_ / "snapped/report.json")["snap"];
+  EXPECT_EQ(snap["unit"], "mm");
+  bool whole = false;  // the part is 1 long in the world
+  for (const json& s : snap["snaps"]) {
+    whole = whole || (s["kind"] == "plane distance" && s["standard"] == 100);
+    EXPECT_LE(s["chi2_growth"], s["chi2_most"]);
+    EXPECT_LE(s["moved_px"], s["noise_px"]);
+    EXPECT_NEAR(s["deviation"], s["standard"].get<double>() - s["measured"].get<double>(), 1e-9);
+  }
+  EXPECT_TRUE(whole);
+  const std::string csv = text_of_file(folder_ / "snapped/snaps.csv");
+  EXPECT_EQ(count_lines(csv), 1 + int(snap["snaps"].size()));
+  EXPECT_THAT(csv, HasSubstr("\nplane distance,"));
+
+  ASSERT_EQ(run(command + " --out " + in_folder("plain")).status, 0);
+  const Outcome vague = run(command + " --snap inch --out " + in_folder("vague"));
+  EXPECT_EQ(vague.status, 0);
+  EXPECT_THAT(vague.err, HasSubstr("nobody says how large the part is"));
+  EXPECT_FALSE(fs::exists(folder_ / "vague/snaps.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "plain/snaps.csv"));
+  EXPECT_FALSE(json_in(folder_ / "plain/report.json").contains("snap"));
+  EXPECT_EQ(text_of_file(folder_ / "vague/sketch.step"),
+            text_of_file(folder_ / "plain/sketch.step"))
+      << "nothing is touched";
+  EXPECT_EQ(run(command + " --snap iso --scale-by circle:0=2cm --out " + in_folder("none")).status,
+            2);
+}
+
 TEST_F(Scale, AKnownDiameterScalesTheCadFilesAndLeavesTheOthersInWorldUnits) {
   const json sketch = json_in(result_ + "/sketch.json"), report = json_in(result_ + "/report.json");
   const double scale = 20 / largest_diameter(sketch);
@@ -94,10 +129,13 @@ TEST_F(Scale, ExportScalesByACurveOfTheReport) {
   double length = 0;
   for (int k = 0; k < 3; ++k)
     length += std::pow(sketch["nodes"][ends[0].get<int>()][k].get<double>() -
-                           sketch["nodes"][ends[1].get<int>()][k].get<double>(), 2);
+                           sketch["nodes"][ends[1].get<int>()][k].get<double>(),
+                       2);
   const std::string out = in_folder("scaled.json");
-  ASSERT_EQ(run("export " + result_ + " --format sketch -o " + out + " --scale-by line:" +
-                std::to_string(line) + "=80mm --unit cm").status, 0);
+  ASSERT_EQ(run("export " + result_ + " --format sketch -o " + out +
+                " --scale-by line:" + std::to_string(line) + "=80mm --unit cm")
+                .status,
+            0);
   const json scaled = json_in(out);
   EXPECT_NEAR(scaled["scale"]["units_per_world"].get<double>(), 8 / std::sqrt(length), 1e-9);
   EXPECT_EQ(scaled["scale"]["unit"], "cm");
@@ -147,8 +185,8 @@ TEST_F(Scale, WhatCannotBeHadIsAWarning) {
 
 // However early the time is up, there is a sound result.
 TEST_F(Scale, ATinyBudgetStopsRefiningAndNotReporting) {
-  const Outcome o = run("reconstruct " + scene_ + " --overlays 1 --budget 0.001 -o " +
-                        in_folder("early"));
+  const Outcome o =
+      run("reconstruct " + scene_ + " --overlays 1 --budget 0.001 -o " + in_folder("early"));
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.err, HasSubstr("budget of 0.001 s is used up"));
   const json report = json_in(in_folder("early/report.json"));
@@ -161,14 +199,18 @@ TEST_F(Scale, ATinyBudgetStopsRefiningAndNotReporting) {
           "--reproducible -o " + in_folder("enough"));
   EXPECT_EQ(enough.err.find("budget"), std::string::npos);
   ASSERT_EQ(run("reconstruct " + scene_ + " --preset fast --overlays 0 --reproducible -o " +
-                in_folder("all")).status, 0);
+                in_folder("all"))
+                .status,
+            0);
   EXPECT_EQ(json_in(in_folder("enough/sketch.json"))["strokes"],
             json_in(in_folder("all/sketch.json"))["strokes"]);
 }
 
 TEST_F(Scale, ABoxCutsOutTheObject) {
   ASSERT_EQ(run("reconstruct " + scene_ + " --preset fast --overlays 0 -o " + in_folder("half") +
-                " --box=-1,-1,-1,2,2,0.5").status, 0);
+                " --box=-1,-1,-1,2,2,0.5")
+                .status,
+            0);
   const json all = json_in(result_ + "/sketch.json"), half = json_in(in_folder("half/sketch.json"));
   double top_of_all = 0, top = 0;
   for (const json& n : all["nodes"]) top_of_all = std::max(top_of_all, n[2].get<double>());
