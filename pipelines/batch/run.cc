@@ -48,6 +48,8 @@ std::vector<std::string> worker_flags(const BatchRun& run) {
   std::vector<std::string> flags = flags_of(texts, wanted.list);
   if (!run.open.format.empty()) flags.insert(flags.end(), {"--format", run.open.format});
   if (run.open.allow_outside) flags.push_back("--allow-outside");
+  if (!run.method.like_folder.empty())
+    flags.insert(flags.end(), {"--like-folder", run.method.like_folder});
   flags.insert(flags.end(), {"--threads", std::to_string(run.threads)});
   return flags;
 }
@@ -202,10 +204,18 @@ std::string batch_options_json(const BatchRun& run) {
   return fields_json(fields.list);
 }
 
+namespace {
+
+// What decides a scene's result beside its input.
+std::string program_text(const BatchRun& run) {
+  return program_version() + "\n" + program_commit() + "\n" + run.open.format +
+         (run.open.allow_outside ? " and beyond\n" : "\n") + batch_options_json(run);
+}
+
+}  // namespace
+
 std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, const BatchRun& run) {
-  const std::string program = program_version() + "\n" + program_commit() + "\n" + run.open.format +
-                              (run.open.allow_outside ? " and beyond\n" : "\n") +
-                              batch_options_json(run);
+  const std::string program = program_text(run);
   std::vector<PlannedScene> planned;
   for (const BatchScene& scene : scenes) {
     SceneKey key = {hash_of(program), input_hash(scene.folder)};
@@ -214,6 +224,26 @@ std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, con
     planned.push_back({scene, key});
   }
   return planned;
+}
+
+FamilyBatches family_batches(const std::vector<PlannedScene>& scenes, const BatchRun& run) {
+  const size_t first = std::min(scenes.size(), size_t(run.family));
+  FamilyBatches out;
+  out.first.assign(scenes.begin(), scenes.begin() + first);
+  out.rest.assign(scenes.begin() + first, scenes.end());
+  out.run = run;
+  out.run.method.like_folder = run.out;
+  std::string siblings;
+  for (const PlannedScene& s : out.first) {
+    const std::string folder = run.out + "/" + s.scene.name;
+    if (!is_done(folder, s.key)) continue;
+    out.run.method.like += (siblings.empty() ? "" : "\n") + s.scene.name;
+    siblings += hash_of_file(folder + "/sketch.json") + "\n";
+  }
+  if (siblings.empty()) return out;  // cold, as they are keyed
+  const std::string program = hash_of(program_text(out.run) + siblings);
+  for (PlannedScene& s : out.rest) s.key.program = program;
+  return out;
 }
 
 BatchPlan plan_batch(const std::vector<PlannedScene>& scenes, const BatchRun& run,
@@ -227,8 +257,7 @@ BatchPlan plan_batch(const std::vector<PlannedScene>& scenes, const BatchRun& ru
   }
   if (open.empty()) return plan;
   Stage stage("look", int(open.size()), nullptr, progress);
-  for (const SceneSize& size :
-       scene_sizes(open, run.open, kPatienceSeconds, [&] { stage.step(); }))
+  for (const SceneSize& size : scene_sizes(open, run.open, kPatienceSeconds, [&] { stage.step(); }))
     plan.loads.push_back(expected_load(size.views, size.pixels, run.method, run.threads));
   const int places = run.jobs > 0 ? run.jobs : std::max(1, usable_cores() / run.threads);
   plan.jobs = std::min(places, int(open.size()));

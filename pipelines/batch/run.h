@@ -27,6 +27,7 @@ struct BatchRun {
   double memory_mb = 0;           ///< of a worker, 0: no limit
   double timeout_seconds = 3600;  ///< of a scene, 0: none
   bool force = false;             ///< do again what is done
+  int family = 0;                 ///< scenes that are siblings of all after them; 0: none
 };
 
 /// A scene with what decides whether it is done.
@@ -34,6 +35,15 @@ struct PlannedScene {
   BatchScene scene;
   SceneKey key;
 };
+
+/// With --family, scenes come in two batches: the first ones, cold, then the others, like those of
+/// them that are done. So which siblings a scene has depends neither on who is ready first nor on
+/// what was done before.
+struct FamilyBatches {
+  std::vector<PlannedScene> first, rest;
+  BatchRun run;  ///< of the rest
+};
+FamilyBatches family_batches(const std::vector<PlannedScene>& scenes, const BatchRun& run);
 
 /// All options of reconstruct as JSON, as reports state them.
 std::string batch_options_json(const BatchRun& run);

@@ -43,6 +43,12 @@ void check_usage(const BatchArguments& arguments) {
     throw UsageError("batch needs ROOT or --list FILE");
   if (arguments.merge && !arguments.shard.empty())
     throw UsageError("--merge is for all shards: leave --shard out");
+  if (arguments.run.family > 0 && !arguments.shard.empty())
+    throw UsageError(
+        "--family is for a whole batch: reconstruct its first scenes, then give all "
+        "shards --like");
+  if (arguments.run.family > 0 && !arguments.run.method.like.empty())
+    throw UsageError("--family and --like name siblings: one of them, please");
 }
 
 std::vector<BatchScene> scenes_of(const BatchArguments& arguments, Progress* progress) {
@@ -146,6 +152,29 @@ void tell_rows(const std::vector<SceneRow>& rows, const BatchRun& run, bool json
   throw SomeFailedError(text);
 }
 
+// All scenes, keyed by the siblings that are done by now.
+std::vector<PlannedScene> with_siblings(const std::vector<PlannedScene>& scenes,
+                                        const BatchRun& run) {
+  if (run.family == 0) return scenes;
+  FamilyBatches both = family_batches(scenes, run);
+  both.first.insert(both.first.end(), both.rest.begin(), both.rest.end());
+  return both.first;
+}
+
+void run_all(const std::vector<PlannedScene>& scenes, const BatchRun& run, const BatchStore& store,
+             Progress* progress) {
+  const auto work = [&](const std::vector<PlannedScene>& some, const BatchRun& how) {
+    run_batch(some, plan_batch(some, how, progress), how, store, progress);
+  };
+  if (run.family == 0) {
+    work(scenes, run);
+    return;
+  }
+  work(family_batches(scenes, run).first, run);
+  const FamilyBatches both = family_batches(scenes, run);  // now that the first ones are done
+  work(both.rest, both.run);
+}
+
 void run_batch_verb(BatchArguments arguments, const CommonOptions& common, Progress* progress) {
   check_usage(arguments);
   BatchRun& run = arguments.run;
@@ -154,19 +183,20 @@ void run_batch_verb(BatchArguments arguments, const CommonOptions& common, Progr
   run.shard = shard_of(arguments.shard);
   const std::vector<PlannedScene> scenes = plan_scenes(scenes_of(arguments, progress), run);
   if (arguments.dry_run) {
-    tell_plan(scenes, plan_batch(scenes, run, progress), common.json);
+    const std::vector<PlannedScene> now = with_siblings(scenes, run);
+    tell_plan(now, plan_batch(now, run, progress), common.json);
     return;
   }
   const BatchStore store(run.out, run.shard);
   if (!arguments.merge) {
     try {
-      run_batch(scenes, plan_batch(scenes, run, progress), run, store, progress);
+      run_all(scenes, run, store, progress);
     } catch (const Interrupted&) {
-      sum_up(scenes, run, store);
+      sum_up(with_siblings(scenes, run), run, store);
       throw;
     }
   }
-  tell_rows(sum_up(scenes, run, store), run, common.json);
+  tell_rows(sum_up(with_siblings(scenes, run), run, store), run, common.json);
 }
 
 void list_run_fields(BatchArguments* a, Fields* f) {
@@ -179,6 +209,9 @@ void list_run_fields(BatchArguments* a, Fields* f) {
          "Address space that a scene may take; 0 sets no limit");
   f->add("retries", &a->run.retries, "times", 0, 100,
          "Of a scene that was killed from elsewhere, perhaps for want of memory");
+  f->add("family", &a->run.family, "scenes", 0, 1000,
+         "So many first ones, by name, are done by themselves and are siblings (--like) of all "
+         "others; 0 knows no family");
   f->add("force", &a->run.force, "Do again what is done");
   f->add("shard", &a->shard, "I/N",
          "Only every N-th of the scenes, from the I-th on, by hashes of their names");

@@ -109,6 +109,51 @@ TEST_F(Batch, TheSameTreeForAnyNumberOfJobsThreadsAndShards) {
   EXPECT_EQ(difference(folder_ / "one", folder_ / "shards"), "");
 }
 
+TEST_F(Batch, AFamilyHasTheSameSiblingsForAnyNumberOfJobsAndWhateverWasDone) {
+  const auto siblings = [&](const std::string& scene) {
+    const json report = json::parse(text_of_file(folder_ / "two" / scene / "report.json"));
+    return report["counts"].value("family_siblings", 0);
+  };
+  ASSERT_EQ(batch("--family 2 --jobs 1", "one").status, 0);
+  ASSERT_EQ(batch("--family 2 --jobs 3", "two").status, 0);
+  EXPECT_EQ(difference(folder_ / "one", folder_ / "two"), "");
+  EXPECT_EQ(siblings("a/box"), 0);
+  EXPECT_EQ(siblings("a/ring"), 0);
+  EXPECT_EQ(siblings("b/box"), 2);
+  const auto first = fs::last_write_time(folder_ / "two/b/box/report.json");
+  ASSERT_EQ(batch("--family 2", "two").status, 0);
+  EXPECT_EQ(fs::last_write_time(folder_ / "two/b/box/report.json"), first) << "nothing to do";
+  fs::remove_all(folder_ / "two/a/ring");
+  ASSERT_EQ(batch("--family 2", "two").status, 0);
+  EXPECT_EQ(difference(folder_ / "one", folder_ / "two"), "");
+  EXPECT_EQ(batch("--family 1", "two").status, 0) << "another family: done anew";
+  EXPECT_EQ(siblings("a/ring"), 1);
+  EXPECT_EQ(siblings("b/box"), 1);
+  EXPECT_EQ(batch("--family 2 --shard 1/2", "two").status, 2);
+  EXPECT_EQ(batch("--family 2 --like " + in_folder("one/a/box"), "two").status, 2);
+}
+
+TEST_F(Batch, APartThatIsNoSiblingIsDoneColdInAFamilysBatch) {
+  root_with("good", "notes.txt", "");
+  fs::copy(scenes_ / "a/ring", folder_ / "root/great", fs::copy_options::recursive);
+  ASSERT_EQ(run("synthesize l-bracket --views 12 --resolution 160 --outputs none -q --out " +
+                in_folder("root/other"))
+                .status,
+            0);
+  const std::string command =
+      "batch " + in_folder("root") + " --preset fast --out " + in_folder("results");
+  const auto strokes = [&] {
+    return json::parse(text_of_file(folder_ / "results/other/sketch.json"))["strokes"];
+  };
+  ASSERT_EQ(run(command).status, 0);
+  const json cold = strokes();
+  ASSERT_EQ(run(command + " --family 2").status, 0);
+  const json report = json::parse(text_of_file(folder_ / "results/other/report.json"));
+  EXPECT_EQ(report["counts"]["family_siblings"], 2);
+  EXPECT_EQ(report["counts"]["family_followed"], 0);
+  EXPECT_EQ(strokes(), cold);
+}
+
 TEST_F(Batch, ShardsInFoldersOfTheirOwnMergeIntoTheSame) {
   ASSERT_EQ(batch("", "all").status, 0);
   for (const char* shard : {"1/2", "2/2"}) {
