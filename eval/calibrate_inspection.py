@@ -90,8 +90,8 @@ FLOOR_PX = 0.003
 # SigmaOptions, where the fit starts.
 START = {"straight_factor": 0.3, "straight_power": 0.5, "straight_place": 0.3,
          "straight_views": 0.2, "curved_factor": 0.8, "curved_power": 0.5, "curved_place": 0.1,
-         "curved_views": 0.1, "place_px": 0.003, "curvature_px2": 1.2, "tail_share": 0.1,
-         "straight_tail": 3, "curved_tail": 2.5}
+         "curved_views": 0.1, "place_px": 0.003, "curvature_px2": 1.5,
+         "curvature_sigma_px2": 0.7, "tail_share": 0.1, "straight_tail": 3, "curved_tail": 2.5}
 
 
 def arrays_of(pieces):
@@ -100,7 +100,7 @@ def arrays_of(pieces):
     shift = of("shift").reshape(-1, n, 3)
     deviation = of("deviation")
     return {"straight": np.array([p["kind"] == "line" for p in pieces]),
-            "largest": np.hypot(deviation[:, ::2], deviation[:, 1::2]).max(axis=1),
+            "deviation": deviation,
             "covariance": of("covariance").reshape(-1, n, n),
             "shift": shift @ shift.transpose(0, 2, 1), "bend": of("bend"),
             "footprint": of("footprint"), "sigma": of("sigma"),
@@ -115,7 +115,7 @@ def probabilities(p, x):
     own = (of_kind("factor") * ratio ** of_kind("power")) ** 2
     place = px2 * ((of_kind("place") * x["bias"]) ** 2 + (of_kind("views") * x["views"]) ** 2 +
                    p["place_px"] ** 2)
-    bend = p["curvature_px2"] * x["bend"]
+    bend = p["curvature_sigma_px2"] * x["bend"]
     v = (own[:, None, None] * x["covariance"] + place[:, None, None] * x["shift"] +
          bend[:, :, None] * bend[:, None, :] +
          (FLOOR_PX ** 2 * px2)[:, None, None] * np.eye(2 * PLACES))
@@ -130,7 +130,9 @@ def probabilities(p, x):
 def score(p, x):
     """Mean log probability of what is the case: is the piece within each of REACHES or not?"""
     stated = np.clip(probabilities(p, x), 0.003, 0.997)
-    return np.where(x["largest"][:, None] <= REACHES, np.log(stated), np.log(1 - stated)).mean()
+    off = x["deviation"] - p["curvature_px2"] * x["bend"]
+    largest = np.hypot(off[:, ::2], off[:, 1::2]).max(axis=1)
+    return np.where(largest[:, None] <= REACHES, np.log(stated), np.log(1 - stated)).mean()
 
 
 def fit(sets):

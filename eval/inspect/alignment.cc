@@ -35,6 +35,7 @@ constexpr double kFree = 1e-6;   // share of the weight below which a direction 
 constexpr double kHeldByDatum = 1e-3;
 constexpr double kLeastScale = 1e-7;  // [extents] of gaps: curves of computers agree to that
 constexpr int kMostSteps = 15;
+constexpr int kFewEdges = 9;  // fewer say nothing of how they scatter about seven unknowns
 
 struct Pose {
   Similarity pose;
@@ -61,6 +62,10 @@ class Aligner {
       out.pose = options_.fit_scale || measured_.size() > 0 ? choose(&out).pose : Similarity();
       out.pose = options_.datums.empty() ? fitted(out.pose, 1, kMostSteps) : on_datums(out.pose);
     }
+    out.scale_sigma = options_.scale_sigma;
+    if (options_.to == AlignTo::kBestFit && options_.datums.empty() && options_.scale_sigma > 0 &&
+        !options_.fit_scale)
+      out.pose = with_likely_scale(out.pose, &out.scale_sigma);
     describe(&out);
     return out;
   }
@@ -101,12 +106,13 @@ class Aligner {
                      [](const Pose& a, const Pose& b) { return a.cost < b.cost; });
   }
 
-  Similarity step(const Similarity& pose, const std::vector<PosePlace>& places) const {
+  Similarity step(const Similarity& pose, const std::vector<PosePlace>& places,
+                  const MatrixXd& basis) const {
     PoseSystem system;
     for (const PosePlace& p : places)
       fit_.add(p, Matrix3d::Identity() - p.tangent * p.tangent.transpose(), &system);
     if (!(system.weight > 0)) return pose;
-    return fit_.after(pose, solve(system, basis_, kFree, nullptr));
+    return fit_.after(pose, solve(system, basis, kFree, nullptr));
   }
 
   Similarity roughly_fitted(Similarity pose) const {
@@ -115,7 +121,7 @@ class Aligner {
         const double reach = wide * nominal_.extent;
         std::vector<PosePlace> places = fit_.places(samples_, pose, reach, false, every(kMiddle));
         weigh_down(reach / 4.685, &places);
-        pose = step(pose, places);
+        pose = step(pose, places, basis_);
       }
     return pose;
   }
@@ -133,14 +139,53 @@ class Aligner {
   }
 
   Similarity fitted(Similarity pose, int every, int steps) const {
+    return fitted(pose, every, steps, basis_);
+  }
+  Similarity fitted(Similarity pose, int every, int steps, const MatrixXd& basis) const {
     for (int k = 0; k < steps; ++k) {
-      const Similarity next = step(pose, weighed_places(pose, every));
+      const Similarity next = step(pose, weighed_places(pose, every), basis);
       const double moved =
           ((next * samples_.position.col(0)) - (pose * samples_.position.col(0))).norm();
       pose = next;
       if (moved < 1e-3 * kLeastScale * nominal_.extent) break;
     }
     return pose;
+  }
+
+  // Relative standard deviation of a growth that the edges tell: as their gaps scatter, which count
+  // together on one edge, H^-1 (sum g g^T) H^-1 with g = sum w J^T gap (Liang & Zeger 1986).
+  double growth_sigma(const Similarity& pose) const {
+    PoseSystem all;
+    std::vector<Vector7> pulls(nominal_.edges.size(), Vector7::Zero());
+    for (const PosePlace& p : weighed_places(pose, 1)) {
+      const Matrix3d across = Matrix3d::Identity() - p.tangent * p.tangent.transpose();
+      fit_.add(p, across, &all);
+      pulls[p.edge] += p.weight * fit_.jacobian(p.measured).transpose() * p.gap;
+    }
+    Eigen::Matrix<double, 7, 7> scatter = Eigen::Matrix<double, 7, 7>::Zero();
+    for (const Vector7& g : pulls) scatter += g * g.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 7, 7>> es(all.information);
+    Vector7 row = Vector7::Zero();  // of the inverse
+    for (int k = 0; k < 7; ++k)
+      if (es.eigenvalues()[k] > kFree * all.weight)
+        row += es.eigenvectors()(6, k) / es.eigenvalues()[k] * es.eigenvectors().col(k);
+    const double edges = double(pulls.size());
+    if (edges < kFewEdges) return std::numeric_limits<double>::infinity();
+    return std::sqrt(row.dot(scatter * row) * edges / (edges - 7)) / fit_.lever();
+  }
+
+  // Between the scale as it stands and the one that the edges want, as both are known.
+  Similarity with_likely_scale(const Similarity& pose, double* sigma) const {
+    const Similarity grown = fitted(pose, 1, kMostSteps, MatrixXd::Identity(7, 7));
+    const double told = growth_sigma(grown);
+    if (!std::isfinite(told)) return pose;
+    const double share = *sigma * *sigma / (*sigma * *sigma + told * told);
+    const double factor = std::pow(grown.scale / pose.scale, share);
+    *sigma = std::sqrt(share) * told;
+    Similarity out = pose;
+    out.scale *= factor;
+    out.translation = fit_.centre() + factor * (pose.translation - fit_.centre());
+    return fitted(out, 1, kMostSteps);
   }
 
   double typical_sigma() const {

@@ -16,6 +16,9 @@ struct AlignOptions {
   AlignTo to = AlignTo::kBestFit;
   /// The measured sketch has no scale: it is fitted, and sizes say nothing.
   bool fit_scale = false;
+  /// Relative standard deviation of the scale of the measured sketch; 0: it is exact. The best fit
+  /// of all edges then moves it as far as it is not known.
+  double scale_sigma = 0;
   /// Names of edges or planes, the first counts most: each holds of the pose what those before it
   /// leave free, the best fit holds the rest. Empty: the best fit of all edges.
   std::vector<std::string> datums = {};
@@ -32,6 +35,7 @@ struct Alignment {
   /// frame, from the covariances of the strokes that hold the pose.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double scale_sigma = 0;   ///< relative, of the scale as it is then
   int free_directions = 0;  ///< that no edge determines: the spin of a turned part
   int equal_poses = 1;      ///< that fit as well to the last digit: the nominal is symmetric
   /// Cost of the next pose that is not equal over that of this one; infinite if there is none.

@@ -110,6 +110,19 @@ Judgement worst(Judgement a, Judgement b) {
   return rank(b) > rank(a) ? b : a;
 }
 
+// Blurred edges lie nearer to their centres of curvature: by how much, as a rule, is known.
+void take_off_pull(const SigmaModel& sigma, Inspection* out) {
+  out->pull_px2 = sigma.options.curvature_px2;
+  for (EdgeMatch& edge : out->association.edges)
+    for (EdgePlace& p : edge.places) {
+      if (p.stroke < 0) continue;
+      const Eigen::Vector3d pull =
+          sigma.options.curvature_px2 * bend_at(out->measured, p.stroke, p.t, sigma.footprint);
+      p.measured -= pull;
+      p.deviation -= pull - p.tangent * p.tangent.dot(pull);
+    }
+}
+
 void check_edges(const Nominal& nominal, double tolerance, bool learn, const SigmaModel& sigma,
                  Inspection* out) {
   const int n = int(nominal.edges.size());
@@ -133,6 +146,8 @@ Inspection inspect(const Nominal& nominal, const Sketch& measured, double footpr
   options.associate.reach =
       std::max(options.associate.reach, kReachTolerances * tolerance / nominal.extent);
   options.align.reach = options.associate.reach;
+  if (options.align.to == AlignTo::kBestFit)
+    options.align.scale_sigma = options.sigma.scale_percent / 100;
   Inspection out;
   out.alignment = align(measured, nominal, options.align);
   out.measured = moved(measured, out.alignment.pose);
@@ -142,8 +157,10 @@ Inspection inspect(const Nominal& nominal, const Sketch& measured, double footpr
   out.association = associate(out.measured, nominal, options.associate, seen_by);
   const bool moves = options.align.to == AlignTo::kBestFit;
   if (!moves) out.alignment.holds.assign(nominal.edges.size(), true);
+  if (options.align.scale_sigma > 0) options.sigma.scale_percent = 100 * out.alignment.scale_sigma;
   const SigmaModel sigma{options.sigma, footprint * out.alignment.pose.scale,
-                         typical_bias_px(measured), &out.alignment};
+                         typical_bias_px(measured), &out.alignment, true};
+  take_off_pull(sigma, &out);
   check_edges(nominal, tolerance, options.learn_prior, sigma, &out);
   out.dimensions = judge(measure_dimensions(find_dimensions(nominal, out.association), nominal,
                                             out.association, out.measured, sigma),

@@ -39,7 +39,8 @@ struct DimensionResult {
 struct Inspection {
   Alignment alignment;
   Sketch measured;
-  Association association;         ///< of nominal.edges
+  Association association;         ///< of nominal.edges; its places without the pull of blur
+  double pull_px2 = 0;             ///< that was taken off them, see SigmaOptions::curvature_px2
   DeviationPrior prior;            ///< of the edges' deviations
   DeviationPrior dimension_prior;  ///< of dimensions, scales in tolerances
   std::vector<EdgeCheck> edges;    ///< of nominal.edges

@@ -269,7 +269,8 @@ std::string pieces_json(const Inspection& inspection, const Nominal& nominal, do
         const Eigen::Matrix<double, 2, 3> across = frame_across(places[j].tangent);
         shift.middleRows<2>(2 * j) = across;
         bend.middleRows<2>(2 * j) = across * bend_at(measured, s, places[j].t, footprint);
-        off.middleRows<2>(2 * j) = across * places[j].deviation;
+        off.middleRows<2>(2 * j) = across * places[j].deviation +
+                                   inspection.pull_px2 * bend.middleRows<2>(2 * j);
       }
       const Evidence& evidence = measured.evidence[s];
       pieces.push_back({{"edge", nominal.edges[e].name},

@@ -58,6 +58,7 @@ std::vector<std::pair<std::string, double*>> named_numbers(SigmaOptions* o) {
           {"curved_views", &o->curved_views},
           {"place_px", &o->place_px},
           {"curvature_px2", &o->curvature_px2},
+          {"curvature_sigma_px2", &o->curvature_sigma_px2},
           {"tail_share", &o->tail_share},
           {"straight_tail", &o->straight_tail},
           {"curved_tail", &o->curved_tail}};
@@ -70,6 +71,11 @@ double SigmaModel::factor(const Stroke& stroke, const Evidence& e) const {
   const double ratio = std::max(kLeastBias, e.bias_px) * footprint / e.sigma;
   return straight ? options.straight_factor * std::pow(ratio, options.straight_power)
                   : options.curved_factor * std::pow(ratio, options.curved_power);
+}
+
+double SigmaModel::pull_px2() const {
+  const double sigma = options.curvature_sigma_px2;
+  return without_pull ? sigma : std::hypot(options.curvature_px2, sigma);
 }
 
 double SigmaModel::wide(StrokeKind kind) const {
@@ -161,7 +167,7 @@ PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& p
         across * curve_jacobian(kind, controls, p.t).leftCols(root.rows()) * root;
     auto rows = other.middleRows<2>(2 * j);
     rows.leftCols<kRigid>() = aside * across;
-    rows.col(kRigid) = sigma.options.curvature_px2 * (across * bend_at(measured, stroke, p.t, px));
+    rows.col(kRigid) = sigma.pull_px2() * (across * bend_at(measured, stroke, p.t, px));
     if (sigma.alignment)
       rows.col(kRigid + kBend) =
           sigma.options.scale_percent / 100 * (across * (p.measured - sigma.alignment->centre));

@@ -27,9 +27,9 @@ struct SigmaOptions {
   double straight_place = 0.3, straight_views = 0.22;
   double curved_place = 0.03, curved_views = 0.09;
   double place_px = 0.001;  ///< [px] and always
-  /// [px^2] over the radius of curvature [px]: by so much a curve lies nearer to, or farther from,
-  /// its centre of curvature, because blurred edges do.
-  double curvature_px2 = 1.5;
+  /// [px^2] over the radius of curvature [px]: by so much a curve lies nearer to its centre of
+  /// curvature, because blurred edges do, and the standard deviation of that.
+  double curvature_px2 = 1.5, curvature_sigma_px2 = 0.7;
   double tail_share = 0.1;     ///< of strokes are worse
   double straight_tail = 3.5;  ///< by so much
   double curved_tail = 2.2;
@@ -45,7 +45,9 @@ struct SigmaModel {
   double footprint = 0;  ///< length of a pixel at the part; 0 if nobody knows: no errors in px
   double bias_px = 0;    ///< by which views disagree: median over the strokes
   const Alignment* alignment = nullptr;
+  bool without_pull = false;  ///< the mean pull of blur has been taken off what was measured
 
+  double pull_px2() const;  ///< standard deviation of that pull, or its size if it is still there
   double factor(const Stroke& stroke, const Evidence& evidence) const;
   double wide(StrokeKind kind) const;  ///< sigma of the worse ones over the others'
   double place(const Stroke& stroke,

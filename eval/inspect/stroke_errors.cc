@@ -23,7 +23,7 @@ Eigen::Matrix<double, 3, kErrorsOfStroke> StrokeErrors::at(double t) const {
   out.middleCols<3>(kErrorsOfEdgels) =
       sigma_.place(measured_.strokes[stroke_], measured_.evidence[stroke_]) *
       Eigen::Matrix3d::Identity();
-  out.col(kErrorsOfStroke - 1) = sigma_.options.curvature_px2 * bend_at(measured_, stroke_, t, px);
+  out.col(kErrorsOfStroke - 1) = sigma_.pull_px2() * bend_at(measured_, stroke_, t, px);
   return out;
 }
 

@@ -53,6 +53,9 @@ SketchOrigin sketch_origin(const std::string& given) {
   const nlohmann::json sketch = parsed(sketch_file(given));
   if (sketch.is_object() && sketch.contains("footprint") && sketch["footprint"].is_number())
     out.footprint = sketch["footprint"].get<double>();
+  if (sketch.is_object() && sketch.contains("pose_scale_sigma") &&
+      sketch["pose_scale_sigma"].is_number())
+    out.pose_scale_sigma = sketch["pose_scale_sigma"].get<double>();
   const nlohmann::json report = parsed(fs::path(sketch_file(given)).parent_path() / "report.json");
   const auto folder = nlohmann::json::json_pointer("/scene/folder");
   if (report.is_object() && report.contains(folder) && report[folder].is_string())

@@ -93,6 +93,7 @@ class System {
   void assemble(const std::vector<Linear>& rows, double damping);
   State step() const;
   double offset_px() const;
+  double scale_sigma() const;
   Sketch meet(const Sketch& joined) const;
   std::vector<double> distances() const;
 
@@ -320,6 +321,25 @@ double System::offset_px() const {
   return 1.4826 * median(offset);
 }
 
+// How errors of the cameras grow the strokes about their middle: these follow the cameras, dx =
+// -A^-1 B dc, and the cameras' covariance is that of the system without strokes. By samples, for
+// not all control points are places.
+double System::scale_sigma() const {
+  std::vector<StrokeVector> growth(kinds_.size(), StrokeVector::Zero());
+  double spread = 0;
+  for (int i = 0; i < layout_.size(); ++i) {
+    const int s = layout_.stroke[i];
+    const Vector3d arm = points_[i] - middle_;
+    growth[s] += point_jacobian(kinds_[s], now_.strokes[s], layout_.t[i]).transpose() * arm;
+    spread += arm.squaredNorm();
+  }
+  VectorXd by_camera = VectorXd::Zero(cameras_.size());
+  for (size_t s = 0; s < growth.size(); ++s)
+    by_camera -= normals_[s].cross.transpose() * (normals_[s].inverse * growth[s]) / spread;
+  const double variance = by_camera.dot(hessian_.ldlt().solve(by_camera));
+  return variance > 0 ? std::sqrt(variance) : 0;
+}
+
 void System::solve(int steps) {
   constexpr double kEnough = 1e-6;  // of the cost
   std::vector<Linear> rows;
@@ -374,6 +394,7 @@ CameraFit System::result(const Sketch& joined) {
   std::vector<Linear> rows;
   linearise(&rows);
   assemble(rows, 0);
+  out.scale_sigma = scale_sigma();
   const int poses = kPose * cameras_.views(), shared = cameras_.size() - poses;
   if (shared > 0) {
     const VectorXd value = now_.cameras.tail(shared);

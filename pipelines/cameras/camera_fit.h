@@ -20,6 +20,7 @@ struct CameraFit {
   double shared_gain = 0;  ///< by which the sum of squares, in variances, is smaller because what
                            ///< the views of a camera share (focal length, centre, lens) has moved
   int shared = 0;          ///< number of such unknowns
+  double scale_sigma = 0;  ///< relative, of the size of all strokes: what the cameras leave open
   std::vector<double> radius_px;           ///< per view: of the object's image
 };
 

@@ -289,6 +289,17 @@ double refine_all(const Posed& first, const Misfit& off, const ReconstructOption
   return after_other;
 }
 
+// Relative standard deviation of the size of what the moved cameras show.
+double scale_sigma(const Posed& posed, const std::vector<View>& stated, const Misfit& off) {
+  if (posed.sketch.size() == 0) return 0;
+  CameraPrior prior = prior_of(off);
+  for (size_t v = 0; v < stated.size(); ++v)
+    if (posed.world.views[v].camera.fx != stated[v].camera.fx) prior.shared = true;
+  const Observation o = look(posed, kReachPx);
+  if (o.matches.matches.empty()) return 0;
+  return fit_cameras(posed.sketch, o, posed.world, stated, prior, 0).scale_sigma;
+}
+
 // Cameras that fit, where these ones do not and others explain more; true if they moved.
 bool move_cameras(const Misfit& off, double share, const ReconstructOptions& options,
                   RunReport* report, Progress* progress, Posed* posed) {
@@ -301,6 +312,8 @@ bool move_cameras(const Misfit& off, double share, const ReconstructOptions& opt
   if (!moved) *posed = stated;
   report->counts.push_back({"pose_offset_before_px", off.offset_px});
   report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
+  if (moved)
+    report->counts.push_back({"pose_scale_sigma", scale_sigma(*posed, stated.world.views, off)});
   stage.result(moved ? "cameras moved" : "stated cameras fit as well");
   return moved;
 }

@@ -39,6 +39,7 @@ struct InspectArguments {
   double smooth_angle_deg = 1;
   int overlays = 2;
   bool pieces = false;
+  bool scale_sigma_given = false;
   InspectOptions inspect;
 };
 
@@ -205,14 +206,16 @@ Inspection inspect_one(const std::string& result, const NominalFile& file,
   const double scale = a.scale > 0 ? a.scale : 1;
   const Sketch measured = moved(read_sketch(result), {scale});
   if (measured.size() == 0) throw InputError(sketch_file(result), "a sketch with curves", "none");
-  const Inspection inspection = inspect(file.nominal, measured, scale * origin.footprint, a.inspect,
+  InspectOptions options = a.inspect;
+  if (!a.scale_sigma_given) options.sigma.scale_percent = 100 * origin.pose_scale_sigma;
+  const Inspection inspection = inspect(file.nominal, measured, scale * origin.footprint, options,
                                         visibility_of(file, scene, scale, millimetres(a.unit)));
   const std::string folder = folder_of(result, a, alone);
   prepare_output_folder(folder);
   remove_old_overlays(folder);
   *title = {result, a.nominal, length_unit_names()[int(a.unit)], a.scale, program_version()};
   write_inspection(
-      folder, inspection, file.nominal, a.inspect, *title,
+      folder, inspection, file.nominal, options, *title,
       draw_worst(folder, inspection, file.nominal, scene, scale, a.overlays, progress));
   if (a.pieces)
     write_atomically(folder + "/inspection_pieces.json", [&](std::ostream& out) {
@@ -339,7 +342,8 @@ Fields list_inspect_fields(InspectArguments* a) {
         "Faces of the STEP file that meet at less have no edge");
   f.group("Errors");
   f.add("scale-sigma", &a->inspect.sigma.scale_percent, "%", 0, 100,
-        "Standard deviation of the scale");
+        "Standard deviation of the scale; if left out, what cameras that were moved leave open")
+      .applied = [a] { a->scale_sigma_given = true; };
   f.choose("prior", &a->prior, {"part", "none"},
            "Deviations to expect: as those of all edges of the part, or of any scale");
   f.add("calibration", &a->calibration, "FILE.json",
