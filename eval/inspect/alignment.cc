@@ -35,7 +35,8 @@ constexpr double kFree = 1e-6;   // share of the weight below which a direction 
 constexpr double kHeldByDatum = 1e-3;
 constexpr double kLeastScale = 1e-7;  // [extents] of gaps: curves of computers agree to that
 constexpr int kMostSteps = 15;
-constexpr int kFewEdges = 9;  // fewer say nothing of how they scatter about seven unknowns
+constexpr double kMostGrowth = 3;  // [sigma] of the scale: by more, it is the part
+constexpr int kFewEdges = 9;       // fewer say nothing of how they scatter about seven unknowns
 
 struct Pose {
   Similarity pose;
@@ -178,7 +179,8 @@ class Aligner {
   Similarity with_likely_scale(const Similarity& pose, double* sigma) const {
     const Similarity grown = fitted(pose, 1, kMostSteps, MatrixXd::Identity(7, 7));
     const double told = growth_sigma(grown);
-    if (!std::isfinite(told)) return pose;
+    const double growth = std::abs(std::log(grown.scale / pose.scale));
+    if (!std::isfinite(told) || growth > kMostGrowth * *sigma) return pose;
     const double share = *sigma * *sigma / (*sigma * *sigma + told * told);
     const double factor = std::pow(grown.scale / pose.scale, share);
     *sigma = std::sqrt(share) * told;

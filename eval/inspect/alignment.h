@@ -16,8 +16,8 @@ struct AlignOptions {
   AlignTo to = AlignTo::kBestFit;
   /// The measured sketch has no scale: it is fitted, and sizes say nothing.
   bool fit_scale = false;
-  /// Relative standard deviation of the scale of the measured sketch; 0: it is exact. The best fit
-  /// of all edges then moves it as far as it is not known.
+  /// Relative standard deviation of the scale of the measured sketch, because of its cameras; 0: it
+  /// is exact. The best fit of all edges then moves it as far as it is not known.
   double scale_sigma = 0;
   /// Names of edges or planes, the first counts most: each holds of the pose what those before it
   /// leave free, the best fit holds the rest. Empty: the best fit of all edges.

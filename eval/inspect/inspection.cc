@@ -37,6 +37,10 @@ void warn_of_pose(const Nominal& nominal, const Sketch& measured, const InspectO
                                                 " times as large as the nominal part: scale, unit?"
                                           : ""));
   }
+  if (options.align.scale_sigma > 0)
+    w.push_back("the cameras leave the scale open by " +
+                ratio_text(100 * options.align.scale_sigma) +
+                " %: a part that is larger or smaller as a whole looks the same");
   if (options.align.to == AlignTo::kAsGiven) return;
   if (a.free_directions > 0)
     w.push_back("the edges leave " + std::to_string(a.free_directions) +
@@ -146,8 +150,6 @@ Inspection inspect(const Nominal& nominal, const Sketch& measured, double footpr
   options.associate.reach =
       std::max(options.associate.reach, kReachTolerances * tolerance / nominal.extent);
   options.align.reach = options.associate.reach;
-  if (options.align.to == AlignTo::kBestFit)
-    options.align.scale_sigma = options.sigma.scale_percent / 100;
   Inspection out;
   out.alignment = align(measured, nominal, options.align);
   out.measured = moved(measured, out.alignment.pose);
@@ -157,7 +159,8 @@ Inspection inspect(const Nominal& nominal, const Sketch& measured, double footpr
   out.association = associate(out.measured, nominal, options.associate, seen_by);
   const bool moves = options.align.to == AlignTo::kBestFit;
   if (!moves) out.alignment.holds.assign(nominal.edges.size(), true);
-  if (options.align.scale_sigma > 0) options.sigma.scale_percent = 100 * out.alignment.scale_sigma;
+  options.sigma.scale_percent =
+      std::hypot(options.sigma.scale_percent, 100 * out.alignment.scale_sigma);
   const SigmaModel sigma{options.sigma, footprint * out.alignment.pose.scale,
                          typical_bias_px(measured), &out.alignment, true};
   take_off_pull(sigma, &out);

@@ -207,7 +207,7 @@ Inspection inspect_one(const std::string& result, const NominalFile& file,
   const Sketch measured = moved(read_sketch(result), {scale});
   if (measured.size() == 0) throw InputError(sketch_file(result), "a sketch with curves", "none");
   InspectOptions options = a.inspect;
-  if (!a.scale_sigma_given) options.sigma.scale_percent = 100 * origin.pose_scale_sigma;
+  if (!a.scale_sigma_given && a.scale > 0) options.align.scale_sigma = origin.pose_scale_sigma;
   const Inspection inspection = inspect(file.nominal, measured, scale * origin.footprint, options,
                                         visibility_of(file, scene, scale, millimetres(a.unit)));
   const std::string folder = folder_of(result, a, alone);

@@ -134,7 +134,8 @@ TEST_F(Batch, AFamilyHasTheSameSiblingsForAnyNumberOfJobsAndWhateverWasDone) {
 }
 
 TEST_F(Batch, APartThatIsNoSiblingIsDoneColdInAFamilysBatch) {
-  root_with("good", "notes.txt", "");
+  fs::create_directories(folder_ / "root");
+  fs::copy(scenes_ / "a/box", folder_ / "root/good", fs::copy_options::recursive);
   fs::copy(scenes_ / "a/ring", folder_ / "root/great", fs::copy_options::recursive);
   ASSERT_EQ(run("synthesize l-bracket --views 12 --resolution 160 --outputs none -q --out " +
                 in_folder("root/other"))

@@ -123,6 +123,19 @@ TEST(Inspect, AnUncertainScaleMakesLongDistancesUncertain) {
   }
 }
 
+TEST(Inspect, AScaleThatCamerasLeaveOpenIsMeasuredByTheEdges) {
+  InspectOptions o = within(0.1);
+  o.align.scale_sigma = 0.005;
+  const Inspection i = inspect(nominal_plate(), moved(with_sigma(plate(), 0.002), {1.004}), 0, o);
+  EXPECT_NEAR(i.alignment.pose.scale, 1 / 1.004, 1e-5);
+  EXPECT_LT(i.alignment.scale_sigma, 1e-4);
+  EXPECT_THAT(i.warnings, testing::Contains(HasSubstr("cameras leave the scale open")));
+  for (const DimensionResult& d : i.dimensions) EXPECT_EQ(d.verdict, Judgement::kIn);
+  o.align.scale_sigma = 0.0005;  // surely it is not the scale
+  const Sketch larger = moved(with_sigma(plate(), 0.002), {1.004});
+  EXPECT_EQ(inspect(nominal_plate(), larger, 0, o).verdict, Judgement::kOut);
+}
+
 TEST(Inspect, TolerancesFollowTheTable) {
   InspectOptions o;
   o.iso = Iso2768::kMedium;
