@@ -26,6 +26,12 @@ double length(const TruthCurve& curve) {
   return (curve.points.rightCols(n) - curve.points.leftCols(n)).colwise().norm().sum();
 }
 
+std::map<std::string, int> kinds(const Truth& truth) {
+  std::map<std::string, int> count;
+  for (const TruthCurve& curve : truth.curves) ++count[curve.type];
+  return count;
+}
+
 TEST(PartTable, ThereAreMoreThanThirtyPartsOfDifferentNames) {
   const std::vector<std::string> names = part_names();
   EXPECT_GE(names.size(), 30u);
@@ -50,7 +56,7 @@ TEST(PartTable, WhatBenchmarksTurnIsThereInSeveralParts) {
   std::map<std::string, std::vector<PartParameter>> found;
   for (const PartSpec& spec : part_specs())
     for (const PartParameter& p : spec.parameters) found[p.name].push_back(p);
-  for (const char* name : {"gap", "wall", "fillet", "crease"}) {
+  for (const char* name : {"gap", "wall", "fillet", "round", "crease"}) {
     EXPECT_GE(found[name].size(), 2u) << name;
     for (const PartParameter& p : found[name]) {
       EXPECT_EQ(p.least, found[name][0].least) << name;
@@ -145,6 +151,27 @@ TEST(Parts, FilletIsTheRadiusOfTheArcs) {
     }
 }
 
+// Machined faces bound the bracket and the flange: whatever was cast has no edge.
+TEST(Parts, RoundedEdgesAreNoEdges) {
+  using Kinds = std::map<std::string, int>;
+  EXPECT_EQ(kinds(truth_of("cast-bracket", 1)), (Kinds{{"Line", 4}, {"Circle", 8}}));
+  EXPECT_EQ(kinds(truth_of("blend-step", 1)), (Kinds{{"Line", 15}, {"Circle", 6}}));
+  EXPECT_EQ(kinds(truth_of("cast-flange", 1, {{"holes", 4}})), (Kinds{{"Circle", 11}}));
+}
+
+TEST(Parts, ATaperEndsInARoundOfItsRadiusAndBeginsWhereTheEdgeIsSharp) {
+  const Truth truth = truth_of("taper-block", 3, {{"round", 0.06}, {"sharp", 0.4}});
+  EXPECT_EQ(kinds(truth), (std::map<std::string, int>{{"Line", 12}, {"Circle", 2}}));
+  int sharp = 0;
+  for (const TruthCurve& c : truth.curves) {
+    if (c.type == "Circle") {
+      EXPECT_NEAR(length(c), 0.06 * M_PI / 2, 1e-4);
+    }
+    sharp += std::abs(length(c) - 0.4) < 1e-6;
+  }
+  EXPECT_EQ(sharp, 2);
+}
+
 TEST(Parts, SettingOneDimensionLeavesTheOthersAsTheSeedDrewThem) {
   const Eigen::Matrix3Xd a = truth_of("l-bracket", 5).sketch.nodes;
   const Eigen::Matrix3Xd b = truth_of("l-bracket", 5, {{"thickness", 7}}).sketch.nodes;
@@ -165,12 +192,6 @@ TEST(Parts, WrongValuesAreToldWhatThereIs) {
   }
   EXPECT_NE(wrong_values(*find_part("flange"), {{"holes", 4.5}}), "");
   EXPECT_EQ(wrong_values(*find_part("flange"), {{"holes", 4}}), "");
-}
-
-std::map<std::string, int> kinds(const Truth& truth) {
-  std::map<std::string, int> count;
-  for (const TruthCurve& curve : truth.curves) ++count[curve.type];
-  return count;
 }
 
 TEST(Parts, EdgesAreOfTheKindsThatTheirMakingGives) {

@@ -12,8 +12,8 @@ namespace sketchsplat {
 namespace {
 
 const PartMaker& maker_of(const std::string& name) {
-  for (const auto* parts :
-       {&prismatic_parts(), &plate_parts(), &thin_parts(), &turned_parts(), &freeform_parts()})
+  for (const auto* parts : {&prismatic_parts(), &plate_parts(), &thin_parts(), &turned_parts(),
+                            &freeform_parts(), &cast_parts()})
     for (const PartMaker& part : *parts)
       if (name == part.name) return part;
   throw std::logic_error("nothing makes the part " + name);

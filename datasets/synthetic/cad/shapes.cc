@@ -7,10 +7,12 @@
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepFilletAPI_MakeChamfer.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepOffsetAPI_ThruSections.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -18,6 +20,7 @@
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
 #include <Eigen/Geometry>
 #include <GC_MakeArcOfCircle.hxx>
@@ -74,6 +77,12 @@ TopoDS_Shape prism(const std::vector<Vector3d>& polygon, const Vector3d& along) 
   for (const Vector3d& p : polygon) wire.Add(pnt(p));
   wire.Close();
   return prism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), along);
+}
+TopoDS_Shape pyramid(const Vector3d& apex, const TopoDS_Face& base) {
+  BRepOffsetAPI_ThruSections maker(/*isSolid=*/true, /*ruled=*/true);
+  maker.AddVertex(BRepBuilderAPI_MakeVertex(pnt(apex)).Vertex());
+  maker.AddWire(BRepTools::OuterWire(base));
+  return maker.Shape();
 }
 TopoDS_Shape revolve(const TopoDS_Face& face) {
   return BRepPrimAPI_MakeRevol(face, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)));

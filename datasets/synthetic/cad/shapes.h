@@ -26,6 +26,7 @@ TopoDS_Shape ball(const Vector3d& centre, double radius);
 TopoDS_Shape quarter_torus(double ring, double radius);
 TopoDS_Shape prism(const TopoDS_Face& face, const Vector3d& along);
 TopoDS_Shape prism(const std::vector<Vector3d>& polygon, const Vector3d& along);
+TopoDS_Shape pyramid(const Vector3d& apex, const TopoDS_Face& base);
 /// A full turn of a face in the xz plane about the z axis.
 TopoDS_Shape revolve(const TopoDS_Face& face);
 /// About the z axis [rad].
@@ -75,6 +76,7 @@ const std::vector<PartMaker>& prismatic_parts();
 const std::vector<PartMaker>& plate_parts();
 const std::vector<PartMaker>& thin_parts();
 const std::vector<PartMaker>& turned_parts();
+const std::vector<PartMaker>& cast_parts();
 const std::vector<PartMaker>& freeform_parts();
 
 }  // namespace sketchsplat

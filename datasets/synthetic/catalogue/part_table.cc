@@ -30,6 +30,8 @@ PartParameter wall(double low, double high) { return {"wall", kLongest, low, hig
 PartParameter round_edge(double low, double high) {
   return {"fillet", kLongest, low, high, 0.001, 0.2};
 }
+// The largest of a part's rounds; thin enough for parts that are round all over.
+PartParameter round(double low, double high) { return {"round", kLongest, low, high, 0.002, 0.06}; }
 PartParameter crease(double low, double high) { return {"crease", "deg", low, high, 3, 90}; }
 
 const PartParameter kLength = {"length", "mm", 50, 80}, kWidth = {"width", "mm", 30, 50},
@@ -287,6 +289,32 @@ std::vector<PartSpec> make_specs() {
         {"height", "of length", 0.25, 0.35},
         {"bulge", "of length", 0.06, 0.15},
         {"skew", "of length", -0.05, 0.05}}},
+      {"cast-bracket",
+       {{"length", "mm", 60, 80},
+        {"width", "of length", 0.5, 0.7},
+        {"height", "of length", 0.7, 0.9},
+        {"leg", kLongest, 0.18, 0.22},
+        round(0.02, 0.06)}},
+      {"blend-step",
+       {{"length", "mm", 60, 80},
+        {"width", "of length", 0.55, 0.75},
+        {"height", "of length", 0.5, 0.7},
+        {"step", "of height", 0.4, 0.55},
+        round(0.025, 0.06)}},
+      {"cast-flange",
+       {{"radius", "mm", 30, 40},
+        {"thickness", kLongest, 0.11, 0.16},
+        {"hub", "of radius", 0.35, 0.42},
+        {"hub-height", kLongest, 0.15, 0.25},
+        {"hole", "of radius", 0.07, 0.1},
+        {"holes", "count", 4, 6},
+        round(0.02, 0.06)}},
+      {"taper-block",
+       {{"length", "mm", 60, 80},
+        {"width", "of length", 0.5, 0.7},
+        {"height", "of length", 0.35, 0.5},
+        {"sharp", "of length", 0.35, 0.65},
+        round(0.025, 0.06)}},
   };
 }
 
