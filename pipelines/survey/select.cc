@@ -8,10 +8,13 @@
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
 #include "pipelines/survey/observe.h"
+#include "pipelines/survey/round_judge.h"
 #include "topology/core/description.h"
 
 namespace sketchsplat {
 namespace {
+
+constexpr double kRoundReachPx = 1.5;  // how far beside a stroke a round may show
 
 // Number of views in which edgels that nobody owns yet are a good part of a stroke.
 int claim(const StrokeObservation& o, int stroke, const EdgelFlags& owned,
@@ -82,6 +85,13 @@ std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& worl
   return round;
 }
 
+// Logarithm of the likelihood ratio of an edge and of no edge, which is as likely one thing as the
+// other: of those of an edge and of either.
+double against_both(double nothing, double round) {
+  const double least = std::min(nothing, round);
+  return least - std::log(0.5 * (std::exp(least - nothing) + std::exp(least - round)));
+}
+
 // [px] A pixel, or more where cameras err: three standard deviations of what strokes stand off.
 double reach_of_edgels(const Sketch& sketch, const EdgeWorld& world, MatchOptions match) {
   constexpr double kLeast = 1, kMost = 3;
@@ -110,6 +120,9 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   lone.min_run = 0;
   const Observation every = observe(sketch, world, lone, 2.0);
   const StrokeJudge judge(world, every, match.reach_px, o.matches.sigma_px, options.evidence);
+  lone.reach_px = std::max(kRoundReachPx, match.reach_px);
+  const Observation wide = observe(sketch, world, lone, 2.0);
+  const RoundJudge rounds(world, wide, lone.reach_px, options.round);
 
   std::vector<int> order(sketch.size());
   std::iota(order.begin(), order.end(), 0);
@@ -131,27 +144,29 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
     for (int n : {s.begin, s.end}) sum += n >= 0 && degree[n] == 1 ? node : 0;
     return sum;
   };
-  const auto known = [&](int i) {
-    return !options.prior.empty() && !std::isnan(options.prior[i]);
-  };
+  const auto known = [&](int i) { return !options.prior.empty() && !std::isnan(options.prior[i]); };
   const std::vector<char> round = explain_rims(o, world, options, &owned);
   explained = owned;
   for (int i : order) {
     Verdict& verdict = result.verdicts[i];
     const auto judge_by = [&](const EdgelFlags& others) {
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
-      result.nats[i] = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
-      verdict = result.nats[i] > options.least_nats ? Verdict::kKept : Verdict::kUnlikely;
+      const double edge = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
+      const double no_round = -rounds.nats(i, &others);
+      result.nats[i] = against_both(edge, no_round);
+      verdict = result.nats[i] > options.least_nats ? Verdict::kKept
+                : edge > no_round                   ? Verdict::kRound
+                                                    : Verdict::kUnlikely;
     };
     if (o.strokes[i].length_px < options.min_length_px) verdict = Verdict::kShort;
     if (round[i]) verdict = Verdict::kRound;
     if (verdict != Verdict::kKept) continue;
     // Where two edges run side by side, the better one has explained its edgels already.
     const double places = own_cover(o, i, options.min_views, owned) * o.strokes[i].samples;
-    if (!known(i) && (claim(o, i, owned, &per_view) < options.min_views ||
-                      kOutlierNats * places < price(i)))
-      verdict = judge.nats(i, nullptr) > options.least_nats ? Verdict::kRedundant
-                                                            : Verdict::kUnlikely;
+    if (!known(i) &&
+        (claim(o, i, owned, &per_view) < options.min_views || kOutlierNats * places < price(i)))
+      verdict =
+          judge.nats(i, nullptr) > options.least_nats ? Verdict::kRedundant : Verdict::kUnlikely;
     else
       judge_by(owned);
     if (verdict != Verdict::kKept &&

@@ -4,6 +4,7 @@
 #include "edges/views/lift.h"
 #include "pipelines/survey/likelihood.h"
 #include "pipelines/survey/observe.h"
+#include "pipelines/survey/round_judge.h"
 #include "sketches/graph/sketch.h"
 #include "topology/core/remap.h"
 
@@ -16,6 +17,7 @@ struct SelectOptions {
   double price = 3;            ///< [nat] of a parameter, see SegmentOptions
   double place_sigma_px = 0.2;  ///< [px] see place_sigma_px
   EvidenceModel evidence;
+  RoundModel round;
   /// [nat] log prior odds of strokes that are known from elsewhere, one per stroke, NaN: none. They
   /// add to the likelihood; neither their number of views nor their price counts, which those paid
   /// for who knew them first. Empty: of no stroke.

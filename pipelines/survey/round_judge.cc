@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/survey/round_judge.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/types/median.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Sightings = std::vector<RoundSighting>;
+
+constexpr double kLeastShare = 0.3;  // of a stroke's samples that a view must show to tell
+constexpr int kFewestSamples = 3;
+constexpr int kManyViews = 6;           // of the strokes that tell how edges show
+constexpr int kFits = 8;                // rounds of expectation and maximization
+constexpr double kSpread = 0.2;         // half of what a round moves by, over its radius
+constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
+
+// Two normals of the curve at all samples of a stroke, which turn no more than it does.
+std::vector<Eigen::Matrix<double, 3, 2>> normals_along(const Observation& o, int stroke) {
+  std::vector<Eigen::Matrix<double, 3, 2>> out;
+  Vector3d last = o.samples.tangent.col(o.layout.first[stroke]).unitOrthogonal();
+  for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i) {
+    const Vector3d t = o.samples.tangent.col(i);
+    last = (last - t * t.dot(last)).normalized();
+    out.emplace_back();
+    out.back() << last, t.cross(last);
+  }
+  return out;
+}
+
+// What the matches of a stroke in one view add up to.
+struct Gathered {
+  std::vector<float> place, log_width;
+  Vector3d row = Vector3d::Zero();
+  int outline = 0;
+};
+
+float quantile(std::vector<float> values, double share) {
+  const auto at = values.begin() + std::min<size_t>(values.size() - 1, share * values.size());
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Where values are densest: the middle of the shortest half, of that, and so on.
+double half_sample_mode(std::vector<float> x) {
+  std::sort(x.begin(), x.end());
+  size_t first = 0, n = x.size();
+  while (n > 3) {
+    const size_t half = (n + 1) / 2;
+    size_t best = first;
+    for (size_t i = first; i + half <= first + n; ++i)
+      if (x[i + half - 1] - x[i] < x[best + half - 1] - x[best]) best = i;
+    first = best, n = half;
+  }
+  double sum = 0;
+  for (size_t i = first; i < first + n; ++i) sum += x[i];
+  return sum / n;
+}
+
+double log_mean_exp(const std::vector<double>& x) {
+  const double most = *std::max_element(x.begin(), x.end());
+  double mean = 0;
+  for (const double v : x) mean += std::exp(v - most) / x.size();
+  return most + std::log(mean);
+}
+
+}  // namespace
+
+Sightings round_sightings(const EdgeWorld& world, const Observation& o, int stroke,
+                          const EdgelFlags* others) {
+  const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
+  const auto normals = normals_along(o, stroke);
+  std::vector<Gathered> views(world.views.size());
+  for (int i = first; i < first + n; ++i)
+    for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m) {
+      const SampleMatch& match = o.matches.matches[m];
+      if (others && (*others)[match.view][match.edgel]) continue;
+      const Edgel& e = world.maps[match.view].edgels[match.edgel];
+      const Vector3d x = o.samples.position.col(i), t = o.samples.tangent.col(i);
+      const Vector3d across = (x - world.views[match.view].center_in_world()).cross(t).normalized();
+      const double slope = distance_gradient(world, match, x).dot(across);
+      const int brighter = slope > 0 ? 1 : -1;
+      const double scale = std::abs(slope) * world.footprint;
+      Gathered& g = views[match.view];
+      g.place.push_back(float(-brighter * match.distance_px));
+      g.log_width.push_back(std::log(std::max(1e-3f, e.width)));
+      g.row.head<2>() += scale * (normals[i - first].transpose() * across);
+      g.row.z() -= brighter * scale;
+      g.outline += e.outline;
+    }
+  Sightings out;
+  for (Gathered& g : views) {
+    const int k = int(g.place.size());
+    if (k < std::max<double>(kFewestSamples, kLeastShare * n)) continue;
+    out.push_back(
+        {median(std::move(g.place)), median(std::move(g.log_width)), 2 * g.outline > k, g.row / k});
+  }
+  return out;
+}
+
+RoundJudge::RoundJudge(const EdgeWorld& world, const Observation& wide, double reach_px,
+                       const RoundModel& model)
+    : world_(world), wide_(wide), model_(model), reach_(reach_px) {
+  constexpr double kLow = 0.1, kLowNormal = 0.126;  // quantile of |x|, x normal
+  sigma_ = model.least_sigma_px, width_sigma_ = model.least_width_sigma;
+  std::vector<float> off, log_width;
+  for (size_t s = 0; s + 1 < wide.layout.first.size(); ++s) {
+    const Sightings seen = round_sightings(world, wide, int(s), nullptr);
+    if (int(seen.size()) < kManyViews) continue;
+    for (const RoundSighting& v : seen) {
+      off.push_back(float(std::abs(v.place_px)));
+      log_width.push_back(float(v.log_width));
+    }
+  }
+  if (off.empty()) return;
+  // Sharp edges lie still, and are as wide as most are: low quantiles tell of them alone.
+  sigma_ = std::max<double>(sigma_, quantile(off, kLow) / kLowNormal);
+  log_width_ = half_sample_mode(log_width);
+  for (float& w : log_width) w = std::abs(float(w - log_width_));
+  width_sigma_ = std::max<double>(width_sigma_, quantile(log_width, 2 * kLow) / (2 * kLowNormal));
+}
+
+// Likelihood of a place that should be 0, over that of one anywhere in reach.
+double RoundJudge::near(double off_px) const {
+  const double r = off_px / sigma_, peak = 2 * reach_ / (sigma_ * kRoot2Pi);
+  return model_.accident + (1 - model_.accident) * peak * std::exp(-0.5 * r * r);
+}
+
+// Where the stroke is, or a little beside it, as all views together have it.
+double RoundJudge::places_of_edge(const Sightings& seen) const {
+  const auto nats_at = [&](const Eigen::Vector2d& shift) {
+    double sum = -0.5 * shift.squaredNorm() / (model_.slack_px * model_.slack_px);
+    for (const RoundSighting& v : seen)
+      sum += std::log(near(v.place_px - v.row.head<2>().dot(shift)));
+    return sum;
+  };
+  const double here = nats_at(Eigen::Vector2d::Zero());
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  for (int k = 0; k < kFits; ++k) {
+    Eigen::Matrix2d H = Eigen::Matrix2d::Identity() * std::pow(sigma_ / model_.slack_px, 2);
+    Eigen::Vector2d g = Eigen::Vector2d::Zero();
+    for (const RoundSighting& v : seen) {
+      const Eigen::Vector2d row = v.row.head<2>();
+      const double off = v.place_px - row.dot(shift);
+      // Wide at first: the stroke may lie beside all of them.
+      const double r = off / (k < kFits / 2 ? 3 * sigma_ : sigma_);
+      const double w = std::exp(-0.5 * r * r);
+      H += w * row * row.transpose(), g += w * row * v.place_px;
+    }
+    shift = H.ldlt().solve(g);
+  }
+  if (!shift.allFinite()) return here;
+  // What it costs to say where, among the places that could be told apart.
+  const double occam =
+      2 * std::log(std::max(1.0, model_.slack_px * std::sqrt(double(seen.size())) / sigma_));
+  return std::max(here, nats_at(shift) - occam);
+}
+
+// Anywhere within a round, of unknown radius.
+double RoundJudge::places_of_band(const Sightings& seen) const {
+  std::vector<double> sums;
+  for (double half = kSpread * model_.least_radius_px; sums.size() < 5 && half <= reach_;
+       half *= 1.4) {
+    double sum = 0;
+    for (const RoundSighting& v : seen)
+      sum += std::log(model_.accident +
+                      (1 - model_.accident) * (std::abs(v.place_px) < half ? reach_ / half : 0));
+    sums.push_back(sum);
+  }
+  return sums.empty() ? -INFINITY : log_mean_exp(sums);
+}
+
+double RoundJudge::places_of_rim(const Sightings& seen) const {
+  double best = -INFINITY;
+  for (const double start : {1.0, 3.0, 9.0}) {
+    Vector3d x(0, 0, start * model_.least_radius_px);
+    for (int k = 0; k < kFits; ++k) {
+      const bool wide = k < kFits / 2;
+      Matrix3d H = 1e-4 * Matrix3d::Identity();
+      Vector3d g = Vector3d::Zero();
+      for (const RoundSighting& v : seen) {
+        if (!v.outline) continue;
+        const double off = v.place_px - v.row.dot(x);
+        const double r = off / (wide ? 6 * sigma_ : sigma_);
+        const double w = k == 0 ? 1 : std::exp(-0.5 * r * r);
+        const Vector3d row = k < 2 ? Vector3d(v.row.x(), v.row.y(), 0) : v.row;
+        const double place = k < 2 ? v.place_px - v.row.z() * x.z() : v.place_px;
+        H += w * row * row.transpose(), g += w * row * place;
+      }
+      const double radius = x.z();
+      const Vector3d next = H.ldlt().solve(g);
+      if (!next.allFinite()) break;
+      x = next;
+      if (k < 2) x.z() = radius;
+    }
+    if (!(x.z() >= model_.least_radius_px)) continue;
+    double sum = 0;
+    for (const RoundSighting& v : seen)
+      sum += v.outline ? std::log(near(v.place_px - v.row.dot(x))) : 0;
+    best = std::max(best, sum);
+  }
+  constexpr double kPrice = 9;  // [nat] of three parameters
+  return best - kPrice;
+}
+
+double RoundJudge::widths_of_round(const Sightings& seen) const {
+  constexpr double kBroad = 1.4;  // range of the logarithm of the width of what is no edge
+  double sum = 0;
+  for (const RoundSighting& v : seen) {
+    if (v.outline) continue;
+    const double r = (v.log_width - log_width_) / width_sigma_;
+    const double peak = std::exp(-0.5 * r * r) / (width_sigma_ * kRoot2Pi);
+    sum += std::log((model_.round_sharp * peak + (1 - model_.round_sharp) / kBroad) /
+                    (model_.sharp * peak + (1 - model_.sharp) / kBroad));
+  }
+  return sum;
+}
+
+double RoundJudge::nats(int stroke, const EdgelFlags* others) const {
+  const Sightings seen = round_sightings(world_, wide_, stroke, others);
+  if (seen.empty()) return 0;
+  const double rounds = log_mean_exp({places_of_band(seen), places_of_rim(seen)});
+  return rounds - places_of_edge(seen) + widths_of_round(seen);
+}
+
+}  // namespace sketchsplat

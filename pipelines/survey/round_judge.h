@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "edges/views/unexplained.h"
+#include "pipelines/survey/observe.h"
+
+namespace sketchsplat {
+
+/// How edges and rounds (fillets, bends, round corners) show. Set by hand on strokes of synthetic
+/// parts.
+struct RoundModel {
+  double least_radius_px = 2;       ///< [px] of a round that is none any more but an edge
+  double accident = 0.15;           ///< views in which something else lies beside a stroke
+  double sharp = 0.9;               ///< views in which an edge is as wide as edges are here
+  double round_sharp = 0.3;         ///< the same of a round
+  double least_sigma_px = 0.05;     ///< [px] standard deviation of an edge's median place in a view
+  double least_width_sigma = 0.03;  ///< of the logarithm of the median width in a view
+  double slack_px = 0.3;            ///< [px] standard deviation of a stroke about its edge
+};
+
+/// What one view shows along a stroke: medians over its samples.
+struct RoundSighting {
+  double place_px = 0;  ///< where its edgels lie, along the normal of line of sight and tangent
+  double log_width = 0;
+  bool outline = false;
+  /// Change of the place by moves of the stroke along its two normals [px / px], and by the radius
+  /// of a round whose axis the stroke is: 1 or -1 times the scale, away from the brighter side.
+  Eigen::Vector3d row = Eigen::Vector3d::Zero();
+};
+
+/// Tells rounds from edges. An edge lies at one place in all views and is everywhere as wide as the
+/// blur of the pictures has it. A round is a band: in some views it is the outline, where lines of
+/// sight touch it, and that place moves with the view; in others its shading is strongest somewhere
+/// across it, and wider or, where noise decides, narrower than an edge.
+class RoundJudge {
+ public:
+  /// `wide`: a sketch, observed without exclusion and with min_run 0, within `reach_px`. How
+  /// exactly edges lie and how wide they are is estimated from those strokes that say so most
+  /// clearly. Both must outlive the judge.
+  RoundJudge(const EdgeWorld& world, const Observation& wide, double reach_px,
+             const RoundModel& model);
+
+  /// Logarithm of the likelihood ratio [nat] of a round and of an edge, without the edgels that are
+  /// `others`' (per view and edgel; may be null). Views are independent witnesses. 0 without views.
+  double nats(int stroke, const EdgelFlags* others) const;
+
+  double sigma_px() const { return sigma_; }
+  double log_width() const { return log_width_; }
+
+ private:
+  double places_of_edge(const std::vector<RoundSighting>& seen) const;
+  double places_of_band(const std::vector<RoundSighting>& seen) const;
+  double places_of_rim(const std::vector<RoundSighting>& seen) const;
+  double widths_of_round(const std::vector<RoundSighting>& seen) const;
+  double near(double off_px) const;
+
+  const EdgeWorld& world_;
+  const Observation& wide_;
+  RoundModel model_;
+  double reach_, sigma_, log_width_ = 0, width_sigma_;
+};
+
+/// What the views show along a stroke that show enough of it.
+std::vector<RoundSighting> round_sightings(const EdgeWorld& world, const Observation& wide,
+                                           int stroke, const EdgelFlags* others);
+
+}  // namespace sketchsplat
