@@ -8,6 +8,7 @@
 #include "pipelines/stages/stages.h"
 #include "pipelines/survey/confidence.h"
 #include "pipelines/survey/observe.h"
+#include "pipelines/survey/round_judge.h"
 #include "sketches/curve/curve_chain.h"
 
 namespace sketchsplat {
@@ -62,13 +63,17 @@ Evidence unseen() {
 }
 
 // Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
-// seen where they are: with it anything may have come that edgels do not bear out.
+// seen where they are: with it anything may have come that edgels do not bear out, and the borders
+// of rounds.
 Sketch without_improbable(Sketch sketch, int first, const EdgeWorld& world,
                           const ReconstructOptions& options, int* left) {
   const StrokeObservation o = with_evidence(world, options, &sketch);
   record_confidence(stroke_features(sketch, world, o), &sketch);
+  const Observation wide = observe_rounds(sketch, world, 0);
+  const RoundJudge rounds(world, wide, options.select.round);
   std::vector<bool> keep(sketch.size(), true);
-  for (int s = first; s < sketch.size(); ++s) keep[s] = sketch.evidence[s].confidence >= kProbable;
+  for (int s = first; s < sketch.size(); ++s)
+    keep[s] = sketch.evidence[s].confidence >= kProbable && rounds.nats(s, nullptr) <= 0;
   *left = int(std::count(keep.begin() + first, keep.end(), true));
   return keep_strokes(sketch, keep);
 }

@@ -106,6 +106,7 @@ double six_digits(double x) {
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
                     double spacing_px) {
   Observation o;
+  o.reach_px = options.reach_px;
   o.layout = plan_samples(sketch, spacing_px * world.footprint);
   o.samples = evaluate_samples(sketch, o.layout);
   o.matches =

@@ -25,6 +25,7 @@ struct StrokeStats {
 
 /// A sketch held against the edgels.
 struct Observation {
+  double reach_px = 0;  ///< [px] within which it was matched
   SampleLayout layout;
   Samples samples;
   Matches matches;

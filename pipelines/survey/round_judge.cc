@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 using Sightings = std::vector<RoundSighting>;
 
 constexpr double kLeastShare = 0.3;  // of a stroke's samples that a view must show to tell
+constexpr double kReachPx = 1.5;     // how far beside a stroke a round may show
 constexpr int kFewestSamples = 3;
 constexpr int kManyViews = 6;           // of the strokes that tell how edges show
 constexpr int kFits = 8;                // rounds of expectation and maximization
@@ -105,9 +106,16 @@ Sightings round_sightings(const EdgeWorld& world, const Observation& o, int stro
   return out;
 }
 
-RoundJudge::RoundJudge(const EdgeWorld& world, const Observation& wide, double reach_px,
-                       const RoundModel& model)
-    : world_(world), wide_(wide), model_(model), reach_(reach_px) {
+Observation observe_rounds(const Sketch& sketch, const EdgeWorld& world, double least_reach_px) {
+  MatchOptions match;
+  match.exclusive = match.quadratics = false;
+  match.min_run = 0;
+  match.reach_px = std::max(kReachPx, least_reach_px);
+  return observe(sketch, world, match, 2.0);
+}
+
+RoundJudge::RoundJudge(const EdgeWorld& world, const Observation& wide, const RoundModel& model)
+    : world_(world), wide_(wide), model_(model), reach_(wide.reach_px) {
   constexpr double kLow = 0.1, kLowNormal = 0.126;  // quantile of |x|, x normal
   sigma_ = model.least_sigma_px, width_sigma_ = model.least_width_sigma;
   std::vector<float> off, log_width;

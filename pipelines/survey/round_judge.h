@@ -31,17 +31,19 @@ struct RoundSighting {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
 };
 
+/// The observation that a RoundJudge takes: of all that lies beside strokes, alone or not, within
+/// `least_reach_px` or what a round needs.
+Observation observe_rounds(const Sketch& sketch, const EdgeWorld& world, double least_reach_px);
+
 /// Tells rounds from edges. An edge lies at one place in all views and is everywhere as wide as the
 /// blur of the pictures has it. A round is a band: in some views it is the outline, where lines of
 /// sight touch it, and that place moves with the view; in others its shading is strongest somewhere
 /// across it, and wider or, where noise decides, narrower than an edge.
 class RoundJudge {
  public:
-  /// `wide`: a sketch, observed without exclusion and with min_run 0, within `reach_px`. How
-  /// exactly edges lie and how wide they are is estimated from those strokes that say so most
-  /// clearly. Both must outlive the judge.
-  RoundJudge(const EdgeWorld& world, const Observation& wide, double reach_px,
-             const RoundModel& model);
+  /// `wide`: see observe_rounds. How exactly edges lie and how wide they are is estimated from those
+  /// strokes that say so most clearly. Both must outlive the judge.
+  RoundJudge(const EdgeWorld& world, const Observation& wide, const RoundModel& model);
 
   /// Logarithm of the likelihood ratio [nat] of a round and of an edge, without the edgels that are
   /// `others`' (per view and edgel; may be null). Views are independent witnesses. 0 without views.

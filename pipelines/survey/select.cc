@@ -14,8 +14,6 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kRoundReachPx = 1.5;  // how far beside a stroke a round may show
-
 // Number of views in which edgels that nobody owns yet are a good part of a stroke.
 int claim(const StrokeObservation& o, int stroke, const EdgelFlags& owned,
           std::vector<int>* per_view) {
@@ -120,9 +118,8 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   lone.min_run = 0;
   const Observation every = observe(sketch, world, lone, 2.0);
   const StrokeJudge judge(world, every, match.reach_px, o.matches.sigma_px, options.evidence);
-  lone.reach_px = std::max(kRoundReachPx, match.reach_px);
-  const Observation wide = observe(sketch, world, lone, 2.0);
-  const RoundJudge rounds(world, wide, lone.reach_px, options.round);
+  const Observation wide = observe_rounds(sketch, world, match.reach_px);
+  const RoundJudge rounds(world, wide, options.round);
 
   std::vector<int> order(sketch.size());
   std::iota(order.begin(), order.end(), 0);
