@@ -67,6 +67,10 @@ void list_select(SelectOptions* o, Fields* f) {
   f->add("min-views", &o->min_views, "views", 2, 10000, "Views that must see a stroke");
   f->add("min-nats", &o->least_nats, "nat", -1000, 1000,
          "Logarithm of the likelihood ratio of an edge and of none that a stroke needs");
+  f->add("least-round", &o->round.least_radius_px, "px", 0.5, 1e6,
+         "Radius from which on a rounded edge is none any more");
+  f->add("least-round-size", &o->round.least_radius, "world units", 0, 1e9,
+         "The same in units of the cameras; 0: --least-round tells");
   f->add("min-length", &o->min_length_px, "px", 0, 1000, "Shorter strokes are dropped");
 }
 

@@ -12,14 +12,18 @@ namespace sketchsplat {
 namespace {
 
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Sightings = std::vector<RoundSighting>;
 
 constexpr double kLeastShare = 0.3;  // of a stroke's samples that a view must show to tell
 constexpr double kReachPx = 1.5;     // how far beside a stroke a round may show
 constexpr int kFewestSamples = 3;
-constexpr int kManyViews = 6;           // of the strokes that tell how edges show
-constexpr int kFits = 8;                // rounds of expectation and maximization
+constexpr int kManyViews = 6;                     // of the strokes that tell how edges show
+constexpr int kFits = 8;                          // rounds of expectation and maximization
+constexpr double kLow = 0.1, kLowNormal = 0.126;  // quantile of |x|, x normal
+constexpr double kTight = 0.5;          // of the least radius of a round: rounds that are edges
+constexpr double kScatter = 0.11;       // of places about the best edge, over a round's radius
 constexpr double kSpread = 0.2;         // half of what a round moves by, over its radius
 constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
 
@@ -67,6 +71,7 @@ double half_sample_mode(std::vector<float> x) {
 
 double log_mean_exp(const std::vector<double>& x) {
   const double most = *std::max_element(x.begin(), x.end());
+  if (most == -INFINITY) return most;
   double mean = 0;
   for (const double v : x) mean += std::exp(v - most) / x.size();
   return most + std::log(mean);
@@ -97,11 +102,12 @@ Sightings round_sightings(const EdgeWorld& world, const Observation& o, int stro
       g.outline += e.outline;
     }
   Sightings out;
-  for (Gathered& g : views) {
+  for (size_t v = 0; v < views.size(); ++v) {
+    Gathered& g = views[v];
     const int k = int(g.place.size());
     if (k < std::max<double>(kFewestSamples, kLeastShare * n)) continue;
-    out.push_back(
-        {median(std::move(g.place)), median(std::move(g.log_width)), 2 * g.outline > k, g.row / k});
+    out.push_back({int(v), median(std::move(g.place)), median(std::move(g.log_width)),
+                   2 * g.outline > k, g.row / k});
   }
   return out;
 }
@@ -116,23 +122,41 @@ Observation observe_rounds(const Sketch& sketch, const EdgeWorld& world, double 
 
 RoundJudge::RoundJudge(const EdgeWorld& world, const Observation& wide, const RoundModel& model)
     : world_(world), wide_(wide), model_(model), reach_(wide.reach_px) {
-  constexpr double kLow = 0.1, kLowNormal = 0.126;  // quantile of |x|, x normal
-  sigma_ = model.least_sigma_px, width_sigma_ = model.least_width_sigma;
-  std::vector<float> off, log_width;
-  for (size_t s = 0; s + 1 < wide.layout.first.size(); ++s) {
-    const Sightings seen = round_sightings(world, wide, int(s), nullptr);
-    if (int(seen.size()) < kManyViews) continue;
-    for (const RoundSighting& v : seen) {
-      off.push_back(float(std::abs(v.place_px)));
-      log_width.push_back(float(v.log_width));
-    }
+  if (model.least_radius > 0) model_.least_radius_px = model.least_radius / world.footprint;
+  sigma_ = model.least_sigma_px;
+  std::vector<Sightings> strokes(wide.layout.first.size() - 1);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int s = 0; s < int(strokes.size()); ++s) {
+    strokes[s] = round_sightings(world, wide, s, nullptr);
+    if (int(strokes[s].size()) < kManyViews) strokes[s].clear();
   }
-  if (off.empty()) return;
-  // Sharp edges lie still, and are as wide as most are: low quantiles tell of them alone.
-  sigma_ = std::max<double>(sigma_, quantile(off, kLow) / kLowNormal);
-  log_width_ = half_sample_mode(log_width);
-  for (float& w : log_width) w = std::abs(float(w - log_width_));
-  width_sigma_ = std::max<double>(width_sigma_, quantile(log_width, 2 * kLow) / (2 * kLowNormal));
+  std::vector<float> off;
+  for (const Sightings& seen : strokes)
+    for (const RoundSighting& v : seen) off.push_back(float(std::abs(v.place_px)));
+  // Sharp edges lie still: a low quantile tells of them alone.
+  if (!off.empty()) sigma_ = std::max<double>(sigma_, quantile(off, kLow) / kLowNormal);
+  learn_widths(strokes);
+}
+
+// Most of what a view shows is as wide as its blur makes it, outlines of rounds, too.
+void RoundJudge::learn_widths(const std::vector<Sightings>& strokes) {
+  std::vector<float> every;
+  std::vector<std::vector<float>> by_view(world_.views.size());
+  for (const Sightings& seen : strokes)
+    for (const RoundSighting& v : seen) {
+      every.push_back(float(v.log_width));
+      by_view[v.view].push_back(float(v.log_width));
+    }
+  if (every.empty()) return;
+  log_width_.assign(by_view.size(), half_sample_mode(every));
+  for (size_t v = 0; v < by_view.size(); ++v)
+    if (int(by_view[v].size()) >= kManyViews) log_width_[v] = half_sample_mode(by_view[v]);
+  std::vector<float> off;
+  for (const Sightings& seen : strokes)
+    for (const RoundSighting& v : seen)
+      off.push_back(float(std::abs(v.log_width - log_width_[v.view])));
+  width_sigma_ =
+      std::max<double>(model_.least_width_sigma, quantile(off, 2 * kLow) / (2 * kLowNormal));
 }
 
 // Likelihood of a place that should be 0, over that of one anywhere in reach.
@@ -141,34 +165,40 @@ double RoundJudge::near(double off_px) const {
   return model_.accident + (1 - model_.accident) * peak * std::exp(-0.5 * r * r);
 }
 
-// Where the stroke is, or a little beside it, as all views together have it.
+// Where the stroke is, or a little beside it, as all views together have it; or where a round shows
+// that is too small to be one.
 double RoundJudge::places_of_edge(const Sightings& seen) const {
-  const auto nats_at = [&](const Eigen::Vector2d& shift) {
-    double sum = -0.5 * shift.squaredNorm() / (model_.slack_px * model_.slack_px);
-    for (const RoundSighting& v : seen)
-      sum += std::log(near(v.place_px - v.row.head<2>().dot(shift)));
+  const double slack = model_.slack_px;
+  const auto nats_at = [&](const Vector2d& shift, double sigma) {
+    const double peak = (1 - model_.accident) * 2 * reach_ / (sigma * kRoot2Pi);
+    double sum = -0.5 * shift.squaredNorm() / (slack * slack);
+    for (const RoundSighting& v : seen) {
+      const double r = (v.place_px - v.row.head<2>().dot(shift)) / sigma;
+      sum += std::log(model_.accident + peak * std::exp(-0.5 * r * r));
+    }
     return sum;
   };
-  const double here = nats_at(Eigen::Vector2d::Zero());
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  Vector2d shift = Vector2d::Zero();
   for (int k = 0; k < kFits; ++k) {
-    Eigen::Matrix2d H = Eigen::Matrix2d::Identity() * std::pow(sigma_ / model_.slack_px, 2);
-    Eigen::Vector2d g = Eigen::Vector2d::Zero();
+    // Wide at first: the stroke may lie beside all of them.
+    const double sigma = k < kFits / 2 ? 3 * sigma_ : sigma_;
+    Eigen::Matrix2d H = Eigen::Matrix2d::Identity() * std::pow(sigma_ / slack, 2);
+    Vector2d g = Vector2d::Zero();
     for (const RoundSighting& v : seen) {
-      const Eigen::Vector2d row = v.row.head<2>();
-      const double off = v.place_px - row.dot(shift);
-      // Wide at first: the stroke may lie beside all of them.
-      const double r = off / (k < kFits / 2 ? 3 * sigma_ : sigma_);
-      const double w = std::exp(-0.5 * r * r);
+      const Vector2d row = v.row.head<2>();
+      const double r = (v.place_px - row.dot(shift)) / sigma, w = std::exp(-0.5 * r * r);
       H += w * row * row.transpose(), g += w * row * v.place_px;
     }
     shift = H.ldlt().solve(g);
+    if (!shift.allFinite()) return nats_at(Vector2d::Zero(), sigma_);
   }
-  if (!shift.allFinite()) return here;
   // What it costs to say where, among the places that could be told apart.
-  const double occam =
-      2 * std::log(std::max(1.0, model_.slack_px * std::sqrt(double(seen.size())) / sigma_));
-  return std::max(here, nats_at(shift) - occam);
+  const double occam = 2 * std::log(std::max(1.0, slack * std::sqrt(double(seen.size())) / sigma_));
+  const double tight = std::hypot(sigma_, kScatter * kTight * model_.least_radius_px);
+  std::vector<double> sums;
+  for (const double sigma : {sigma_, tight})
+    sums.push_back(std::max(nats_at(Vector2d::Zero(), sigma), nats_at(shift, sigma) - occam));
+  return log_mean_exp(sums);
 }
 
 // Anywhere within a round, of unknown radius.
@@ -185,45 +215,51 @@ double RoundJudge::places_of_band(const Sightings& seen) const {
   return sums.empty() ? -INFINITY : log_mean_exp(sums);
 }
 
-double RoundJudge::places_of_rim(const Sightings& seen) const {
-  double best = -INFINITY;
-  for (const double start : {1.0, 3.0, 9.0}) {
-    Vector3d x(0, 0, start * model_.least_radius_px);
-    for (int k = 0; k < kFits; ++k) {
-      const bool wide = k < kFits / 2;
-      Matrix3d H = 1e-4 * Matrix3d::Identity();
-      Vector3d g = Vector3d::Zero();
-      for (const RoundSighting& v : seen) {
-        if (!v.outline) continue;
-        const double off = v.place_px - v.row.dot(x);
-        const double r = off / (wide ? 6 * sigma_ : sigma_);
-        const double w = k == 0 ? 1 : std::exp(-0.5 * r * r);
-        const Vector3d row = k < 2 ? Vector3d(v.row.x(), v.row.y(), 0) : v.row;
-        const double place = k < 2 ? v.place_px - v.row.z() * x.z() : v.place_px;
-        H += w * row * row.transpose(), g += w * row * place;
-      }
-      const double radius = x.z();
-      const Vector3d next = H.ldlt().solve(g);
-      if (!next.allFinite()) break;
-      x = next;
-      if (k < 2) x.z() = radius;
+// The outlines touch a cylinder: its axis, relative to the stroke, and its radius, from a first
+// one.
+Vector3d RoundJudge::fit_rim(const Sightings& seen, double radius_px) const {
+  Vector3d x(0, 0, radius_px);
+  for (int k = 0; k < kFits; ++k) {
+    const bool free = k > 1;  // the radius; the axis comes first
+    const double sigma = k < kFits / 2 ? 6 * sigma_ : sigma_;
+    Matrix3d H = 1e-4 * Matrix3d::Identity();
+    Vector3d g = Vector3d::Zero();
+    for (const RoundSighting& v : seen) {
+      if (!v.outline) continue;
+      const double r = (v.place_px - v.row.dot(x)) / sigma;
+      const double w = k == 0 ? 1 : std::exp(-0.5 * r * r);
+      const Vector3d row = free ? v.row : Vector3d(v.row.x(), v.row.y(), 0);
+      H += w * row * row.transpose();
+      g += w * row * (v.place_px - (free ? 0 : v.row.z() * radius_px));
     }
-    if (!(x.z() >= model_.least_radius_px)) continue;
-    double sum = 0;
+    const Vector3d next = H.ldlt().solve(g);
+    if (!next.allFinite()) return Vector3d::Zero();
+    x = free ? next : Vector3d(next.x(), next.y(), radius_px);
+  }
+  return x;
+}
+
+double RoundJudge::places_of_rim(const Sightings& seen) const {
+  constexpr double kPrice = 9;  // [nat] of its parameters
+  double best = -INFINITY;
+  for (const double times : {1.0, 3.0, 9.0}) {
+    const Vector3d rim = fit_rim(seen, times * model_.least_radius_px);
+    if (!(rim.z() >= model_.least_radius_px)) continue;
+    double sum = -kPrice;
     for (const RoundSighting& v : seen)
-      sum += v.outline ? std::log(near(v.place_px - v.row.dot(x))) : 0;
+      if (v.outline) sum += std::log(near(v.place_px - v.row.dot(rim)));
     best = std::max(best, sum);
   }
-  constexpr double kPrice = 9;  // [nat] of three parameters
-  return best - kPrice;
+  return best;
 }
 
 double RoundJudge::widths_of_round(const Sightings& seen) const {
+  if (!(width_sigma_ > 0)) return 0;
   constexpr double kBroad = 1.4;  // range of the logarithm of the width of what is no edge
   double sum = 0;
   for (const RoundSighting& v : seen) {
     if (v.outline) continue;
-    const double r = (v.log_width - log_width_) / width_sigma_;
+    const double r = (v.log_width - log_width_[v.view]) / width_sigma_;
     const double peak = std::exp(-0.5 * r * r) / (width_sigma_ * kRoot2Pi);
     sum += std::log((model_.round_sharp * peak + (1 - model_.round_sharp) / kBroad) /
                     (model_.sharp * peak + (1 - model_.sharp) / kBroad));
@@ -235,6 +271,7 @@ double RoundJudge::nats(int stroke, const EdgelFlags* others) const {
   const Sightings seen = round_sightings(world_, wide_, stroke, others);
   if (seen.empty()) return 0;
   const double rounds = log_mean_exp({places_of_band(seen), places_of_rim(seen)});
+  if (rounds == -INFINITY) return rounds;  // no round shows so near
   return rounds - places_of_edge(seen) + widths_of_round(seen);
 }
 

@@ -12,7 +12,8 @@ namespace sketchsplat {
 /// How edges and rounds (fillets, bends, round corners) show. Set by hand on strokes of synthetic
 /// parts.
 struct RoundModel {
-  double least_radius_px = 2;       ///< [px] of a round that is none any more but an edge
+  double least_radius_px = 2;       ///< [px] rounds of a smaller radius are edges
+  double least_radius = 0;          ///< [world units] the same; 0: least_radius_px tells
   double accident = 0.15;           ///< views in which something else lies beside a stroke
   double sharp = 0.9;               ///< views in which an edge is as wide as edges are here
   double round_sharp = 0.3;         ///< the same of a round
@@ -23,6 +24,7 @@ struct RoundModel {
 
 /// What one view shows along a stroke: medians over its samples.
 struct RoundSighting {
+  int view = 0;
   double place_px = 0;  ///< where its edgels lie, along the normal of line of sight and tangent
   double log_width = 0;
   bool outline = false;
@@ -38,11 +40,12 @@ Observation observe_rounds(const Sketch& sketch, const EdgeWorld& world, double 
 /// Tells rounds from edges. An edge lies at one place in all views and is everywhere as wide as the
 /// blur of the pictures has it. A round is a band: in some views it is the outline, where lines of
 /// sight touch it, and that place moves with the view; in others its shading is strongest somewhere
-/// across it, and wider or, where noise decides, narrower than an edge.
+/// across it, and wider or, where noise decides, narrower than an edge. How far places move and how
+/// wide edgels are is a matter of the radius alone, so that small rounds become edges gradually.
 class RoundJudge {
  public:
-  /// `wide`: see observe_rounds. How exactly edges lie and how wide they are is estimated from those
-  /// strokes that say so most clearly. Both must outlive the judge.
+  /// `wide`: see observe_rounds. How exactly edges lie and how wide they are is estimated from
+  /// those strokes that say so most clearly. Both must outlive the judge.
   RoundJudge(const EdgeWorld& world, const Observation& wide, const RoundModel& model);
 
   /// Logarithm of the likelihood ratio [nat] of a round and of an edge, without the edgels that are
@@ -50,11 +53,13 @@ class RoundJudge {
   double nats(int stroke, const EdgelFlags* others) const;
 
   double sigma_px() const { return sigma_; }
-  double log_width() const { return log_width_; }
+  /// Logarithm of the width of sharp edges in a view [px]: its blur, and that of the detector.
+  double log_width(int view) const { return log_width_[view]; }
 
  private:
   double places_of_edge(const std::vector<RoundSighting>& seen) const;
   double places_of_band(const std::vector<RoundSighting>& seen) const;
+  Eigen::Vector3d fit_rim(const std::vector<RoundSighting>& seen, double radius_px) const;
   double places_of_rim(const std::vector<RoundSighting>& seen) const;
   double widths_of_round(const std::vector<RoundSighting>& seen) const;
   double near(double off_px) const;
@@ -62,7 +67,11 @@ class RoundJudge {
   const EdgeWorld& world_;
   const Observation& wide_;
   RoundModel model_;
-  double reach_, sigma_, log_width_ = 0, width_sigma_;
+  void learn_widths(const std::vector<std::vector<RoundSighting>>& strokes);
+
+  double reach_, sigma_;
+  std::vector<double> log_width_;  // per view
+  double width_sigma_ = 0;         // 0: nothing tells how wide edges are
 };
 
 /// What the views show along a stroke that show enough of it.

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/survey/round_judge.h"
+
+#include <gtest/gtest.h>
+
+#include "pipelines/survey/select.h"
+#include "tests/support/strokes.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+const Vector3d kMiddle(0.5, 0.5, 0.5);
+constexpr double kPixel = 3.0 / 500;
+constexpr float kSharp = 1.1f;
+
+// Where on a round corner of a square, with sides at 0.8, a camera in its plane sees most: where a
+// line of sight touches it, or else where its shading happens to be strongest for that camera.
+Vector2d strongest(const Vector2d& camera, double radius, int view, bool contour) {
+  const Vector2d centre(0.8 - radius, 0.8 - radius), to = camera - centre;
+  const double away = std::atan2(to.y(), to.x()), half = std::acos(radius / to.norm());
+  double angle = M_PI / 4 * (1 + 0.6 * std::sin(view));
+  for (const double touching : {away - half, away + half})
+    if (contour && touching > 0 && touching < M_PI / 2) angle = touching;
+  return centre + radius * Vector2d(std::cos(angle), std::sin(angle));
+}
+
+// A cube seen by many, one edge of which is rounded: where it is no outline it shows `inner` times
+// as wide as edges. All pictures are `blur` times as wide as usual. The stroke lies where it is
+// nearest to what all views show.
+struct Scene {
+  Sketch sketch;
+  int rounded = -1;
+  EdgeWorld world;
+  explicit Scene(double radius_px, float inner = 1, float blur = 1) {
+    const double radius = radius_px * kPixel;
+    const Vector3d a(0.2, 0.8, 0.8), b(0.8, 0.8, 0.8);
+    for (const Polyline& e : cube_edges({0.2, 0.2, 0.2}, 0.6)) {
+      const int s = add_line(&sketch, e[0], e[1]);
+      if ((e[0] - a).norm() < 1e-9 && (e[1] - b).norm() < 1e-9) rounded = s;
+    }
+    const double in = radius * (1 - 1.1 * std::sqrt(0.5));
+    for (int n : {sketch.strokes[rounded].begin, sketch.strokes[rounded].end})
+      sketch.nodes.col(n) -= Vector3d(0, in, in);
+    const std::vector<View> views = ring_of_views(40, kMiddle, 3);
+    std::vector<EdgelMap> maps;
+    for (const View& view : views) {
+      const Vector3d c = view.center_in_world();
+      const bool contour = (c.y() > 0.8) != (c.z() > 0.8);
+      const Vector2d at = strongest({c.y(), c.z()}, radius, int(maps.size()), contour);
+      std::vector<Polyline> seen = polylines_of(sketch);
+      seen[rounded] = segment({0.2, at.x(), at.y()}, {0.8, at.x(), at.y()});
+      EdgelMap map = ideal_edgels(view, seen);
+      for (Edgel& e : map.edgels) e.width = kSharp * blur;
+      const size_t first = map.chain[rounded], end = map.chain[rounded + 1];
+      for (size_t i = first; i < end; ++i) {
+        map.edgels[i].outline = contour;
+        if (!contour) map.edgels[i].width *= inner;
+      }
+      maps.push_back(map);
+    }
+    world = make_edge_world(views, maps);
+  }
+  double nats(const RoundModel& model = {}) const {
+    const Observation wide = observe_rounds(sketch, world, 0);
+    return RoundJudge(world, wide, model).nats(rounded, nullptr);
+  }
+};
+
+TEST(RoundJudge, ASightingIsTheMedianPlaceAndWidthOfItsEdgels) {
+  Scene s(0);
+  Sketch aside = s.sketch;
+  const Vector3d shift(0, 0.4 * kPixel, -0.3 * kPixel);
+  for (int n : {aside.strokes[s.rounded].begin, aside.strokes[s.rounded].end})
+    aside.nodes.col(n) += shift;
+  const Observation there = observe_rounds(s.sketch, s.world, 0);
+  const Observation here = observe_rounds(aside, s.world, 0);
+  const auto before = round_sightings(s.world, there, s.rounded, nullptr);
+  const auto after = round_sightings(s.world, here, s.rounded, nullptr);
+  ASSERT_EQ(before.size(), 40u);
+  ASSERT_EQ(after.size(), 40u);
+  double largest = 0;
+  for (size_t v = 0; v < before.size(); ++v) {
+    EXPECT_NEAR(before[v].place_px, 0, 0.02);
+    EXPECT_NEAR(before[v].log_width, std::log(kSharp), 1e-5);
+    // It lies as far beside the moved stroke as the row says, but for the frame's choice of axes.
+    EXPECT_LE(std::abs(after[v].place_px), 1.3 * after[v].row.head<2>().norm() * 0.5 + 0.02);
+    largest = std::max(largest, std::abs(after[v].place_px));
+  }
+  EXPECT_GT(largest, 0.4);
+}
+
+TEST(RoundJudge, EdgelsOfOthersTellNothing) {
+  const Scene s(6);
+  EdgelFlags all = no_edgels(s.world);
+  for (auto& view : all) std::fill(view.begin(), view.end(), 1);
+  const Observation wide = observe_rounds(s.sketch, s.world, 0);
+  EXPECT_EQ(RoundJudge(s.world, wide, {}).nats(s.rounded, &all), 0);
+}
+
+TEST(RoundJudge, ARoundOfSixPixelsIsNoEdgeAndTheSameEdgeSharpIsOne) {
+  EXPECT_GT(Scene(6).nats(), 10) << "its outline moves";
+  EXPECT_GT(Scene(6, 1.4f).nats(), Scene(6).nats() + 5) << "and its shading is wide";
+  EXPECT_LT(Scene(0).nats(), -20);
+}
+
+TEST(RoundJudge, ASharpEdgeInBlurredPicturesIsNoRound) {
+  EXPECT_LT(Scene(0, 1, 2.5f).nats(), -20);
+  EXPECT_GT(Scene(6, 1, 2.5f).nats(), 10);
+}
+
+TEST(RoundJudge, TheBlurOfAViewIsItsOwn) {
+  Scene s(0);
+  for (size_t v = 0; v < s.world.maps.size(); v += 2)  // half of them are out of focus
+    for (Edgel& e : s.world.maps[v].edgels) e.width *= 2;
+  EXPECT_LT(s.nats(), -20);
+  const Observation wide = observe_rounds(s.sketch, s.world, 0);
+  const RoundJudge judge(s.world, wide, {});
+  EXPECT_NEAR(judge.log_width(0), std::log(2 * kSharp), 1e-3);
+  EXPECT_NEAR(judge.log_width(1), std::log(kSharp), 1e-3);
+}
+
+TEST(RoundJudge, RoundsBecomeEdgesGraduallyAsTheirRadiusShrinks) {
+  double last = INFINITY;
+  for (const double radius : {4, 2, 1}) {
+    const double nats = Scene(radius).nats();
+    EXPECT_LT(nats, last) << radius;
+    last = nats;
+  }
+  EXPECT_LT(last, 0);
+}
+
+TEST(RoundJudge, WhatCountsAsRoundIsAnOptionInPixelsAndInUnits) {
+  const Scene s(4);
+  RoundModel model;
+  model.least_radius_px = 1e6;
+  EXPECT_EQ(s.nats(model), -INFINITY);
+  model.least_radius_px = 2;
+  model.least_radius = 1;
+  EXPECT_EQ(s.nats(model), -INFINITY);
+  model.least_radius = 2 * s.world.footprint;
+  EXPECT_DOUBLE_EQ(s.nats(model), s.nats());
+}
+
+TEST(Select, ARoundIsLeftOutAndTheSameEdgeSharpIsKept) {
+  EXPECT_EQ(select_strokes(Scene(0, 1, 2).sketch, Scene(0, 1, 2).world, {}).sketch.size(), 12);
+  const Scene s(6, 1.3f);
+  const Selection chosen = select_strokes(s.sketch, s.world, {});
+  EXPECT_EQ(chosen.sketch.size(), 11);
+  EXPECT_EQ(chosen.verdicts[s.rounded], Verdict::kRound);
+}
+
+}  // namespace
+}  // namespace sketchsplat
