@@ -256,12 +256,16 @@ double RoundJudge::places_of_rim(const Sightings& seen) const {
 double RoundJudge::widths_of_round(const Sightings& seen) const {
   if (!(width_sigma_ > 0)) return 0;
   constexpr double kBroad = 1.4;  // range of the logarithm of the width of what is no edge
+  // Outlines are sharp whatever they are of, and without masks nobody knows them.
+  constexpr double kOutlines = 0.5;
+  const double outlines = world_.hull.empty() ? kOutlines : 0;
+  const double as_sharp = outlines + (1 - outlines) * model_.round_sharp;
   double sum = 0;
   for (const RoundSighting& v : seen) {
     if (v.outline) continue;
     const double r = (v.log_width - log_width_[v.view]) / width_sigma_;
     const double peak = std::exp(-0.5 * r * r) / (width_sigma_ * kRoot2Pi);
-    sum += std::log((model_.round_sharp * peak + (1 - model_.round_sharp) / kBroad) /
+    sum += std::log((as_sharp * peak + (1 - as_sharp) / kBroad) /
                     (model_.sharp * peak + (1 - model_.sharp) / kBroad));
   }
   return sum;
