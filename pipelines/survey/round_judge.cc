@@ -218,6 +218,7 @@ double RoundJudge::places_of_band(const Sightings& seen) const {
 // The outlines touch a cylinder: its axis, relative to the stroke, and its radius, from a first
 // one.
 Vector3d RoundJudge::fit_rim(const Sightings& seen, double radius_px) const {
+  const bool masks = !world_.hull.empty();
   Vector3d x(0, 0, radius_px);
   for (int k = 0; k < kFits; ++k) {
     const bool free = k > 1;  // the radius; the axis comes first
@@ -225,7 +226,7 @@ Vector3d RoundJudge::fit_rim(const Sightings& seen, double radius_px) const {
     Matrix3d H = 1e-4 * Matrix3d::Identity();
     Vector3d g = Vector3d::Zero();
     for (const RoundSighting& v : seen) {
-      if (!v.outline) continue;
+      if (masks && !v.outline) continue;
       const double r = (v.place_px - v.row.dot(x)) / sigma;
       const double w = k == 0 ? 1 : std::exp(-0.5 * r * r);
       const Vector3d row = free ? v.row : Vector3d(v.row.x(), v.row.y(), 0);
@@ -242,12 +243,14 @@ Vector3d RoundJudge::fit_rim(const Sightings& seen, double radius_px) const {
 double RoundJudge::places_of_rim(const Sightings& seen) const {
   constexpr double kPrice = 9;  // [nat] of its parameters
   double best = -INFINITY;
-  for (const double times : {1.0, 3.0, 9.0}) {
+  const bool masks = !world_.hull.empty();
+  for (const double times : {1.0, 3.0, 9.0, -1.0, -3.0, -9.0}) {
+    if (masks && times < 0) break;  // the object is the brighter side of its outline
     const Vector3d rim = fit_rim(seen, times * model_.least_radius_px);
-    if (!(rim.z() >= model_.least_radius_px)) continue;
+    if (!(rim.z() * (times > 0 ? 1 : -1) >= model_.least_radius_px)) continue;
     double sum = -kPrice;
     for (const RoundSighting& v : seen)
-      if (v.outline) sum += std::log(near(v.place_px - v.row.dot(rim)));
+      if (!masks || v.outline) sum += std::log(near(v.place_px - v.row.dot(rim)));
     best = std::max(best, sum);
   }
   return best;
