@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "datasets/types/median.h"
@@ -19,7 +20,7 @@ namespace {
 // The part of the picture that can hold edges, as one channel.
 struct Composite {
   cv::Mat1f value;
-  cv::Mat1b inside;  ///< fully opaque
+  cv::Mat1b inside;  ///< fully opaque: 255, else 0
   int x0 = 0, y0 = 0;
 };
 
@@ -59,7 +60,7 @@ Composite composite(const Picture& picture, const DetectOptions& options) {
       const float grey = 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
                          0.114f * picture.blue.at(x, y);
       c.value(v, u) = masked ? a * (grey + float(options.pedestal)) : grey;
-      c.inside(v, u) = a >= 1.f;
+      c.inside(v, u) = a >= 1.f ? 255 : 0;
     }
   return c;
 }
@@ -88,6 +89,16 @@ float measure_noise(const Composite& c) {
     }
   if (r.size() < 16) return 0;
   return median(std::move(r)) / (0.6745f * 6.f);
+}
+
+// Pixels whose gradient the end of the mask makes.
+cv::Mat1b outline_band(const Composite& c, double sigma_px) {
+  const int reach = int(std::ceil(3 * sigma_px));
+  const cv::Mat around = cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U);
+  cv::Mat1b wide, narrow;
+  cv::dilate(c.inside, wide, around);
+  cv::erode(c.inside, narrow, around);
+  return wide & ~narrow;
 }
 
 struct Gradient {
@@ -163,7 +174,7 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   const float high =
       float(std::max(options.high_floor / 255, options.high_sigma * unit * map.noise));
   chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
-  keep_meaningful(g.magnitude, options.meaning, &map);
+  keep_meaningful(g.magnitude, outline_band(c, options.sigma_px), options.meaning, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
   if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);
   build_lookup(&map, options.reach_px);

@@ -30,12 +30,13 @@ constexpr double kPieces = 30;   // pieces that begin at a place and end differe
 // How many pixels of the neighbourhood of a place are at least so strong.
 class Neighbourhood {
  public:
-  explicit Neighbourhood(const cv::Mat1f& magnitude)
+  Neighbourhood(const cv::Mat1f& magnitude, const cv::Mat1b& outline)
       : nx_(int(magnitude.cols / kCell) + 1), ny_(int(magnitude.rows / kCell) + 1) {
     cells_.resize(size_t(nx_) * ny_);
     for (auto& cell : cells_) cell.fill(0);
     for (int y = 0; y < magnitude.rows; ++y)
-      for (int x = 0; x < magnitude.cols; ++x) ++cells_[cell(x, y)][bin(magnitude(y, x))];
+      for (int x = 0; x < magnitude.cols; ++x)
+        if (!outline(y, x)) ++cells_[cell(x, y)][bin(magnitude(y, x))];
     for (auto& cell : cells_)
       for (int b = kBins - 2; b >= 0; --b) cell[b] += cell[b + 1];
   }
@@ -45,7 +46,7 @@ class Neighbourhood {
     return std::clamp(int(y / kCell), 0, ny_ - 1) * nx_ + i;
   }
   // Share of the pixels around a cell that are at least so strong, without those of the chain
-  // itself. `own`: edgels of the chain per cell.
+  // itself and of the outline. `own`: edgels of the chain per cell.
   double share(int cell, float strength, const std::map<int, int>& own) const {
     const int b = bin(strength);
     double all = 0, strong = 0, mine = 0;
@@ -79,10 +80,14 @@ double degrees_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) * 180 / M_PI;
 }
 
-std::vector<Place> places_of(const EdgelMap& map, int chain, const Neighbourhood& around) {
+std::vector<Place> places_of(const EdgelMap& map, int chain, const Neighbourhood& around,
+                             const cv::Mat1b& outline) {
   const int begin = map.chain[chain], end = map.chain[chain + 1];
   std::map<int, int> own;
-  for (int i = begin; i < end; ++i) ++own[around.cell(map.edgels[i].x, map.edgels[i].y)];
+  for (int i = begin; i < end; ++i) {
+    const Edgel& e = map.edgels[i];  // maxima lie within the picture, off its last pixels
+    if (!outline(int(std::lround(e.y)), int(std::lround(e.x)))) ++own[around.cell(e.x, e.y)];
+  }
   std::vector<Place> out;
   std::vector<Eigen::Vector2d> at;
   double since = kStep;
@@ -149,14 +154,15 @@ void cut(const std::vector<Place>& places, int last_edgel, double tests, double 
 
 }  // namespace
 
-void keep_meaningful(const cv::Mat1f& magnitude, const MeaningOptions& options, EdgelMap* map) {
-  const Neighbourhood around(magnitude);
+void keep_meaningful(const cv::Mat1f& magnitude, const cv::Mat1b& outline,
+                     const MeaningOptions& options, EdgelMap* map) {
+  const Neighbourhood around(magnitude, outline);
   const double tests = kPieces * std::max(1.0, double(map->edgels.size()) / kStep);
   const double least =
       options.most_false > 0 ? -std::log10(options.most_false) : -double(INFINITY);
   std::vector<Piece> pieces;
   for (int c = 0; c < map->num_chains(); ++c) {
-    const std::vector<Place> places = places_of(*map, c, around);
+    const std::vector<Place> places = places_of(*map, c, around, outline);
     if (options.most_false > 0) {
       cut(places, map->chain[c + 1], tests, least, &pieces);
     } else {

@@ -116,10 +116,28 @@ TEST(Meaningful, ABudgetKeepsTheLongSmoothEdgeFirst) {
   EXPECT_GE(on_step(map), 0.8 * 240 * 1.04);
 }
 
+// The outline, whose contrast the mask makes, is much of what lies around an edge on a rod.
+TEST(Meaningful, AShortEdgeOnARodStaysHoweverStrongTheOutlineIs) {
+  constexpr int kEdge = 120, kLength = 12;
+  for (const double contrast : {0.05, 0.08, 0.12}) {
+    Picture p = grey_picture(160, 240, 0.5f);
+    for (int x = 80 - kLength / 2; x < 80 + kLength / 2; ++x)
+      for (int y = kEdge; y < kEdge + 4; ++y) add(&p, x, y, contrast);
+    add_speckles(&p, 300, 0.03);
+    p.alpha = Image<float>(160, 240, 0.f);
+    for (int y = 40; y < 200; ++y)
+      for (int x = 60; x < 100; ++x) p.alpha.at(x, y) = 1;
+    int on_edge = 0;
+    for (const Edgel& e : detect_edges(p, {}).edgels)
+      on_edge += !e.outline && std::abs(e.y - kEdge + 0.5) < 1.5 && std::abs(e.x - 79.5) < 6;
+    EXPECT_GE(on_edge, 0.8 * kLength) << contrast;
+  }
+}
+
 TEST(Meaningful, AnEmptyMapStaysEmpty) {
   EdgelMap map;
   map.width = map.height = 20;
-  keep_meaningful(cv::Mat1f::zeros(20, 20), {}, &map);
+  keep_meaningful(cv::Mat1f::zeros(20, 20), cv::Mat1b::zeros(20, 20), {}, &map);
   EXPECT_EQ(map.num_chains(), 0);
 }
 
