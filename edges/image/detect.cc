@@ -212,8 +212,8 @@ void fill_distances(EdgelMap* map) {
         const int y = way > 0 ? i : h - 1 - i, x = way > 0 ? j : w - 1 - j;
         int& here = map->nearest[size_t(y) * w + x];
         if (here >= 0) continue;
-        const int before = std::max({far(x - way, y), far(x - 1, y - way), far(x, y - way),
-                                     far(x + 1, y - way)});
+        const int before =
+            std::max({far(x - way, y), far(x - 1, y - way), far(x, y - way), far(x + 1, y - way)});
         here = way > 0 ? before - 1 : std::max(here, before - 1);
       }
 }

@@ -18,7 +18,7 @@ constexpr double kBinsPerE = 8;     // bins per factor e
 constexpr double kFirstBin = -9.2;  // logarithm of 1e-4
 constexpr double kMostTurn = 100;   // [deg] change of turn per step, beyond which all are alike
 constexpr double kLeastTurn = 1;    // [deg] what localisation makes of a straight edge
-constexpr double kEvidence = 1.3;    // [nat] of a place, above which it lengthens a piece
+constexpr double kEvidence = 1.3;   // [nat] of a place, above which it lengthens a piece
 constexpr double kDrop = 4;         // [nat] of evidence against that ends a piece
 // Places of a chain that stand for one independent one: turns share their chords, and the strength
 // of a blob is that of its whole outline.
@@ -158,23 +158,21 @@ void keep_meaningful(const cv::Mat1f& magnitude, const cv::Mat1b& outline,
                      const MeaningOptions& options, EdgelMap* map) {
   const Neighbourhood around(magnitude, outline);
   const double tests = kPieces * std::max(1.0, double(map->edgels.size()) / kStep);
-  const double least =
-      options.most_false > 0 ? -std::log10(options.most_false) : -double(INFINITY);
+  const double least = options.most_false > 0 ? -std::log10(options.most_false) : -double(INFINITY);
   std::vector<Piece> pieces;
   for (int c = 0; c < map->num_chains(); ++c) {
     const std::vector<Place> places = places_of(*map, c, around, outline);
     if (options.most_false > 0) {
       cut(places, map->chain[c + 1], tests, least, &pieces);
     } else {
-      pieces.push_back({map->chain[c], map->chain[c + 1],
-                        meaning_of(places, 0, places.size(), tests)});
+      pieces.push_back(
+          {map->chain[c], map->chain[c + 1], meaning_of(places, 0, places.size(), tests)});
     }
   }
   EdgelMap out;
   out.chain.push_back(0);
   for (const Piece& p : pieces) {
-    out.edgels.insert(out.edgels.end(), map->edgels.begin() + p.begin,
-                      map->edgels.begin() + p.end);
+    out.edgels.insert(out.edgels.end(), map->edgels.begin() + p.begin, map->edgels.begin() + p.end);
     out.chain.push_back(int(out.edgels.size()));
     out.meaning.push_back(float(p.meaning));
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "edges/image/meaningful.h"
 
-#include "edges/views/focus.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "edges/views/focus.h"
 
 namespace sketchsplat {
 namespace {
