@@ -17,6 +17,7 @@ constexpr double kSameDeg = 1.5;     // directions that are one
 constexpr double kCornerSine = 0.2;  // lines that meet at less tell no plane
 constexpr int kFewest = 2;           // strokes or corners of a direction
 constexpr int kMostDirections = 12;
+constexpr int kMostLevels = 8;     // of a direction, that strokes are copied to
 constexpr double kMostFacets = 6;  // points along a stroke by which it is known to lie in a level
 
 struct Direction {
@@ -106,6 +107,18 @@ Levels levels_across(const Sketch& s, const Vector3d& normal, double tolerance) 
   return out;
 }
 
+// Those with the most strokes. Where everything is a level, as on a natural surface, the others
+// tell nothing, and copies of all strokes in all of them would be as many as strokes squared.
+std::vector<char> main_levels(const Levels& l) {
+  std::vector<int> order(l.height.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return l.strokes[a].size() > l.strokes[b].size(); });
+  std::vector<char> out(order.size(), 0);
+  for (size_t k = 0; k < order.size() && k < kMostLevels; ++k) out[order[k]] = 1;
+  return out;
+}
+
 }  // namespace
 
 std::vector<Levels> find_levels(const Sketch& sketch, double tolerance) {
@@ -127,13 +140,15 @@ Candidate moved(const Candidate& candidate, const Vector3d& by) {
 
 std::vector<Candidate> level_copies(const Sketch& sketch, const std::vector<Levels>& levels) {
   std::vector<Candidate> out;
-  for (const Levels& l : levels)
+  for (const Levels& l : levels) {
+    const std::vector<char> main = main_levels(l);
     for (size_t from = 0; from < l.height.size(); ++from)
       for (const int stroke : l.strokes[from])
         for (size_t to = 0; to < l.height.size(); ++to)
-          if (to != from)
+          if (to != from && main[to])
             out.push_back(moved({sketch.strokes[stroke].kind, control_points(sketch, stroke)},
                                 (l.height[to] - l.height[from]) * l.normal));
+  }
   return out;
 }
 

@@ -23,8 +23,9 @@ std::vector<Levels> find_levels(const Sketch& sketch, double tolerance);
 /// The curve moved along a vector.
 Candidate moved(const Candidate& candidate, const Eigen::Vector3d& by);
 
-/// What is in one level, in all other ones: the other rim of a hole, the floor of a pocket whose
-/// depth others share, the far side of a plate.
+/// What is in one level, in the other ones: the other rim of a hole, the floor of a pocket whose
+/// depth others share, the far side of a plate. Of every direction the eight levels that hold the
+/// most strokes are copied to, so that copies are linear in the number of strokes.
 std::vector<Candidate> level_copies(const Sketch& sketch, const std::vector<Levels>& levels);
 
 }  // namespace sketchsplat

@@ -49,6 +49,18 @@ TEST(Candidates, TheOtherRimOfAHoleLiesInTheOtherLevelOfThePlate) {
   EXPECT_TRUE(has_circle(level_copies(s, levels), {0.2, 0.3, 0}, 0.1));
 }
 
+// As on a natural surface, where every stroke is a level of its own.
+TEST(Candidates, CopiesIntoOtherLevelsAreLinearInTheNumberOfStrokes) {
+  Sketch s = plate();
+  constexpr int kScattered = 60;
+  for (int k = 0; k < kScattered; ++k) add_circle({0.5, 0.5, -1 - 0.1 * k}, 0.05, &s);
+  Levels levels = find_levels(s, kTolerance).front();
+  ASSERT_EQ(int(levels.height.size()), kScattered + 2);
+  const std::vector<Candidate> copies = level_copies(s, {levels});
+  EXPECT_LE(int(copies.size()), 8 * s.size());
+  EXPECT_TRUE(has_circle(copies, {0.2, 0.3, 0}, 0.1));  // these levels hold the most strokes
+}
+
 TEST(Candidates, AHoleIsMirroredInTheMiddleOfThePart) {
   Sketch s = plate();
   // Two lines upright, so that the sides are levels, too.
