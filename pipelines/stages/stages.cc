@@ -104,7 +104,8 @@ SelectOptions select_options(const ReconstructOptions& options) {
   select.price = options.segment.price;
   select.place_sigma_px = options.rechain.sigma_px;
   // Surfels say less exactly than pictures where an edge is.
-  if (options.detector == "2dgs-sn") select.evidence.least_sigma_px = options.surfel_sigma_px;
+  if (options.detector == "2dgs-sn")
+    select.evidence.least_sigma_px = select.round.least_sigma_px = options.surfel_sigma_px;
   return select;
 }
 

@@ -22,9 +22,10 @@ constexpr int kFewestSamples = 3;
 constexpr int kManyViews = 6;                     // of the strokes that tell how edges show
 constexpr int kFits = 8;                          // rounds of expectation and maximization
 constexpr double kLow = 0.1, kLowNormal = 0.126;  // quantile of |x|, x normal
-constexpr double kTight = 0.5;          // of the least radius of a round: rounds that are edges
-constexpr double kScatter = 0.11;       // of places about the best edge, over a round's radius
-constexpr double kSpread = 0.2;         // half of what a round moves by, over its radius
+constexpr double kTight = 0.5;      // of the least radius of a round: rounds that are edges
+constexpr double kScatter = 0.11;   // of places about the best edge, over a round's radius
+constexpr double kSpread = 0.2;     // half of what a round moves by, over its radius
+constexpr double kSharpest = 0.75;  // quantile of strokes by how often they show as wide as most
 constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
 
 // Two normals of the curve at all samples of a stroke, which turn no more than it does.
@@ -157,6 +158,24 @@ void RoundJudge::learn_widths(const std::vector<Sightings>& strokes) {
       off.push_back(float(std::abs(v.log_width - log_width_[v.view])));
   width_sigma_ =
       std::max<double>(model_.least_width_sigma, quantile(off, 2 * kLow) / (2 * kLowNormal));
+  learn_rate(strokes);
+}
+
+// In photographs edges are less often as wide as most than in renders: the sharpest strokes tell.
+void RoundJudge::learn_rate(const std::vector<Sightings>& strokes) {
+  std::vector<float> shares;
+  for (const Sightings& seen : strokes) {
+    int inner = 0, sharp = 0;
+    for (const RoundSighting& v : seen) {
+      inner += !v.outline;
+      sharp += !v.outline && std::abs(v.log_width - log_width_[v.view]) < 3 * width_sigma_;
+    }
+    if (inner >= kManyViews) shares.push_back(float(sharp) / float(inner));
+  }
+  if (shares.empty()) return;
+  const double rate = std::min<double>(model_.sharp, quantile(shares, kSharpest));
+  model_.round_sharp *= rate / model_.sharp;
+  model_.sharp = rate;
 }
 
 // Likelihood of a place that should be 0, over that of one anywhere in reach.

@@ -68,6 +68,7 @@ class RoundJudge {
   const Observation& wide_;
   RoundModel model_;
   void learn_widths(const std::vector<std::vector<RoundSighting>>& strokes);
+  void learn_rate(const std::vector<std::vector<RoundSighting>>& strokes);
 
   double reach_, sigma_;
   std::vector<double> log_width_;  // per view
