@@ -76,27 +76,37 @@ Sketch polished(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 
 }  // namespace
 
-FinishedSketch complete_sketch(FinishedSketch finished, const SolidSearch& found,
-                               const EdgeWorld& world, const ReconstructOptions& options,
-                               RunReport* report, Progress* progress) {
-  const bool sure = options.inferred && is_sure(found, finished.sketch);
-  if (!found.solid && !sure) return finished;
+FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, const EdgeWorld& world,
+                               const ReconstructOptions& options, RunReport* report,
+                               Progress* progress) {
+  const bool sure = options.inferred && is_sure(*found, finished.sketch);
+  if (!found->solid && !sure) return finished;
   Stage stage("complete", 0, report, progress);
-  const SharpEdges edges = joined(edges_of(found, finished.sketch, world, options), world);
+  const SharpEdges edges = joined(edges_of(*found, finished.sketch, world, options), world);
   if (edges.sketch.size() == 0) return finished;
   // Lengths that were set are worth more than joints that are smooth.
   const bool again = edges.bent && finished.snap.snaps.empty();
   finished.sketch = again ? polished(edges.sketch, world, options) : edges.sketch;
   finished.kept = moved(std::move(finished.kept), 2, edges.now);
   finished.snap.snaps = moved(std::move(finished.snap.snaps), 1, edges.now);
+  rename_doubtful(edges.now, found);
   std::vector<double> implied;
   for (const bool inferred : edges.inferred)
-    implied.push_back(inferred ? implied_probability(found) : 0);
+    implied.push_back(inferred ? implied_probability(*found) : 0);
   judge_strokes(world, options, implied, &finished);
   const auto count = std::count(edges.inferred.begin(), edges.inferred.end(), true);
   report->counts.push_back({"strokes_inferred", double(count)});
   stage.result(std::to_string(count) + " edges inferred");
   return finished;
+}
+
+void rename_doubtful(const std::vector<int>& now, SolidSearch* found) {
+  std::vector<int> doubtful;
+  for (const int s : found->doubtful)
+    if (now[s] >= 0) doubtful.push_back(now[s]);
+  std::sort(doubtful.begin(), doubtful.end());
+  doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
+  found->doubtful = std::move(doubtful);
 }
 
 }  // namespace sketchsplat

@@ -8,9 +8,12 @@ namespace sketchsplat {
 
 /// A sketch whose strokes bound a solid becomes the solid's edges: those that no image shows are
 /// added (unless the options are against it), strokes that were one edge seen twice, or pieces of
-/// one, are one. As given if there is no solid.
-FinishedSketch complete_sketch(FinishedSketch finished, const SolidSearch& found,
-                               const EdgeWorld& world, const ReconstructOptions& options,
-                               RunReport* report, Progress* progress);
+/// one, are one. As given if there is no solid. Doubtful strokes of `found` are renamed.
+FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, const EdgeWorld& world,
+                               const ReconstructOptions& options, RunReport* report,
+                               Progress* progress);
+
+/// Doubtful strokes by what they are called `now`, -1 for those that are gone.
+void rename_doubtful(const std::vector<int>& now, SolidSearch* found);
 
 }  // namespace sketchsplat

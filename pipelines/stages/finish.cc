@@ -28,12 +28,17 @@ RegularizeOptions regularize_options(const ReconstructOptions& options) {
   return regularize;
 }
 
-// What at least so many of the strokes that stay share.
-template <typename T>
-void renumber(const std::vector<bool>& stays, size_t least, std::vector<T>* kept) {
+// What strokes are called when only some of them stay; -1 for the others.
+std::vector<int> numbers_after(const std::vector<bool>& stays) {
   std::vector<int> now;
   int next = 0;
   for (const bool s : stays) now.push_back(s ? next++ : -1);
+  return now;
+}
+
+// What at least so many of the strokes that stay share.
+template <typename T>
+void renumber(const std::vector<int>& now, size_t least, std::vector<T>* kept) {
   for (T& r : *kept) {
     for (int& s : r.strokes) s = now[s];
     r.strokes.erase(std::remove(r.strokes.begin(), r.strokes.end(), -1), r.strokes.end());
@@ -199,24 +204,32 @@ void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
       if (sketch.evidence[s].confidence < kProbable) sketch.evidence[s] = unseen();
       sketch.evidence[s].confidence = implied[s];
     }
-  std::vector<bool> stays;
   finished->features.clear();
   for (int s = 0; s < sketch.size(); ++s) {
-    const double confidence = sketch.evidence[s].confidence;
-    stays.push_back(!(confidence < options.min_confidence));
-    if (!stays.back()) continue;
     finished->features.push_back(features[s].named());
-    finished->features.back().push_back({"confidence", confidence});
+    finished->features.back().push_back({"confidence", sketch.evidence[s].confidence});
   }
-  const int before = sketch.size();
-  renumber(stays, 2, &finished->kept);
-  renumber(stays, 1, &finished->snap.snaps);
-  sketch = keep_strokes(sketch, stays);
-  finished->unsure += before - sketch.size();
   finished->edgel_sigma_px = o.matches.sigma_px;
-  if (before > 0 && sketch.size() == 0)
+}
+
+std::vector<int> leave_out_unsure(double least, FinishedSketch* finished) {
+  std::vector<bool> stays;
+  std::vector<Numbers> features;
+  for (int s = 0; s < finished->sketch.size(); ++s) {
+    stays.push_back(!(finished->sketch.evidence[s].confidence < least));
+    if (stays.back()) features.push_back(std::move(finished->features[s]));
+  }
+  const std::vector<int> now = numbers_after(stays);
+  renumber(now, 2, &finished->kept);
+  renumber(now, 1, &finished->snap.snaps);
+  finished->features = std::move(features);
+  const int before = finished->sketch.size();
+  finished->sketch = keep_strokes(finished->sketch, stays);
+  finished->unsure = before - finished->sketch.size();
+  if (before > 0 && finished->sketch.size() == 0)
     throw TooLittleError("expected strokes as probable as --min-confidence, found " +
                          std::to_string(before) + " less probable ones");
+  return now;
 }
 
 SnapOutcome snaps_by_curve(const FinishedSketch& finished) {

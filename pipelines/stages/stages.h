@@ -94,12 +94,15 @@ FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
                              const std::vector<TagSquare>& tags, const ReconstructOptions& options,
                              RunReport* report, Progress* progress);
 
-/// Fills in evidence and features, and leaves out strokes less probable than asked for, which
-/// throws TooLittleError if none is left. `implied`: per stroke the probability that something else
-/// than the images gives it, or none. A stroke that is probable by this alone has the evidence of
-/// one that no view sees.
+/// Fills in evidence and features. `implied`: per stroke the probability that something else than
+/// the images gives it, or none. A stroke that is probable by this alone has the evidence of one
+/// that no view sees.
 void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
                    const std::vector<double>& implied, FinishedSketch* finished);
+
+/// Leaves out strokes of a confidence under `least` and throws TooLittleError if none is left.
+/// Returns what each stroke is called now, -1 for those left out.
+std::vector<int> leave_out_unsure(double least, FinishedSketch* finished);
 
 /// Fills the report's strokes, regularities (by curve, see curve_chain.h) and counts.
 void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report);

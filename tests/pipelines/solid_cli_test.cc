@@ -131,7 +131,7 @@ TEST_F(SolidsOfImages, AreThePartForAnyNumberOfThreads) {
 // Eight small pictures leave edges out that the faces of the others imply.
 TEST_F(Solids, TheirEdgesCompleteTheSketch) {
   const std::string scene = in_folder("scene");
-  ASSERT_EQ(run("synthesize l-bracket --views 8 --resolution 240 --outputs none --quiet --out '" +
+  ASSERT_EQ(run("synthesize l-bracket --views 8 --resolution 200 --outputs none --quiet --out '" +
                 scene + "'")
                 .status,
             0);
