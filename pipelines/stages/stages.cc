@@ -97,6 +97,8 @@ Round rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
   return {changed ? polish(r.sketch, world, early(options)) : sketch, changed};
 }
 
+constexpr double kNoRound = 1e6;  // [px] as --least-round
+
 }  // namespace
 
 SelectOptions select_options(const ReconstructOptions& options) {
@@ -104,8 +106,11 @@ SelectOptions select_options(const ReconstructOptions& options) {
   select.price = options.segment.price;
   select.place_sigma_px = options.rechain.sigma_px;
   // Surfels say less exactly than pictures where an edge is.
-  if (options.detector == "2dgs-sn")
+  const bool surfels = options.detector == "2dgs-sn";
+  if (surfels)
     select.evidence.least_sigma_px = select.round.least_sigma_px = options.surfel_sigma_px;
+  // Surfels round all edges: without pictures rounds cannot be told.
+  if (surfels && !(options.surfel_snap_px > 0)) select.round.least_radius_px = kNoRound;
   return select;
 }
 
