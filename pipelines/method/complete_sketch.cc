@@ -24,11 +24,6 @@ double implied_probability(const SolidSearch& found) {
   return kRightSolids / (1 + std::exp(-found.margin));
 }
 
-// Without a solid: are there faces that explain most of the strokes?
-bool is_sure(const SolidSearch& found, const Sketch& sketch) {
-  return found.shell && int(2 * found.doubtful.size()) < sketch.size();
-}
-
 SharpEdges edges_of(const SolidSearch& found, const Sketch& sketch, const EdgeWorld& world,
                     const ReconstructOptions& options) {
   if (found.solid) return sharp_edges(found, options.inferred);
@@ -79,8 +74,7 @@ Sketch polished(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, const EdgeWorld& world,
                                const ReconstructOptions& options, RunReport* report,
                                Progress* progress) {
-  const bool sure = options.inferred && is_sure(*found, finished.sketch);
-  if (!found->solid && !sure) return finished;
+  if (!found->solid && !(options.inferred && found->shell)) return finished;
   Stage stage("complete", 0, report, progress);
   const SharpEdges edges = joined(edges_of(*found, finished.sketch, world, options), world);
   if (edges.sketch.size() == 0) return finished;

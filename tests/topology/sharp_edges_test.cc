@@ -110,15 +110,39 @@ TEST(SharpEdges, BetweenFacesThatAreSureTheyAreAddedWithoutASolid) {
     EXPECT_FALSE(found.solid);
     ASSERT_TRUE(found.shell) << found.why;
     const ControlPoints was = control_points(box_with_rim(), s);
-    const bool of_the_top = was.p[0].z() == 2 && was.p[1].z() == 2;
     const SharpEdges all = with_sure_edges(seen, found, 0.01);
-    ASSERT_EQ(all.sketch.size(), of_the_top ? 15 : 16) << "what the top does nobody knows";
+    ASSERT_EQ(all.sketch.size(), 16);
     EXPECT_THAT(validate(all.sketch), IsEmpty());
-    if (of_the_top) continue;
     EXPECT_TRUE(all.inferred.back());
     const ControlPoints is = control_points(all.sketch, 15);
     EXPECT_LT(std::min((was.p[0] - is.p[0]).norm(), (was.p[0] - is.p[1]).norm()), 1e-9);
     EXPECT_EQ(all.sketch.nodes.cols(), seen.nodes.cols()) << "its ends are nodes of others";
+  }
+}
+
+// Rims of a square hole at both ends of a box, and that of a pocket that is deep beyond sight: the
+// hole's four edges are inferred, of the pocket nothing is.
+TEST(SharpEdges, OfAHoleBesideAPocketNobodySeesIntoAreAdded) {
+  SolidMaker m;
+  m.solid.edges = box_solid({-3, -1.5, 0}, {3, 1.5, 2}).edges;
+  m.solid.inferred.assign(12, false);
+  const auto rim = [&](double x, double z) {
+    std::vector<int> n;
+    for (const auto& [dx, y] : {std::pair(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
+      n.push_back(m.node({x + dx, y, z}));
+    for (int i = 0; i < 4; ++i) m.line(n[size_t(i)], n[size_t(i + 1) % 4]);
+  };
+  rim(-1.5, 2), rim(-1.5, 0), rim(1.5, 2);
+  const SolidSearch found = find_solid(m.solid.edges);
+  EXPECT_FALSE(found.solid);
+  ASSERT_TRUE(found.shell) << found.why;
+  EXPECT_EQ(found.shell->faces.size(), 10u) << "six of the box, four of the hole";
+  const SharpEdges all = with_sure_edges(m.solid.edges, found, 0.01);
+  ASSERT_EQ(all.sketch.size(), 28);
+  for (int s = 24; s < 28; ++s) {
+    const ControlPoints line = control_points(all.sketch, s);
+    EXPECT_NEAR((line.p[0] - line.p[1]).norm(), 2, 1e-9);
+    EXPECT_NEAR(std::abs(line.p[0].x() + 1.5), 0.5, 1e-9);
   }
 }
 

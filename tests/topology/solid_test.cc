@@ -9,7 +9,7 @@
 #include "topology/brep/solid_step.h"
 #include "topology/faces/find_planes.h"
 #include "topology/solid/cell_index.h"
-#include "topology/solid/common_faces.h"
+#include "topology/solid/keep_faces.h"
 #include "topology/solid/find_solid.h"
 #include "topology/solid/surface.h"
 
@@ -109,24 +109,23 @@ TEST(FindSolid, ALineOnAFaceIsDoubtfulAndRefused) {
   EXPECT_THAT(search.why, HasSubstr("1 of 13 curves"));
 }
 
-TEST(CommonFaces, AreThoseOnTheSameSurfaceBetweenTheSameCurves) {
-  const Solid shell = common_faces(plate_with_hole(0.2), plate_with_hole(0.5));
-  EXPECT_EQ(shell.faces.size(), 5u) << "the walls of the holes end elsewhere";
+TEST(KeepFaces, LeavesTheStrokesThatBoundThem) {
+  const Solid shell =
+      keep_faces(plate_with_hole(0.2), {true, true, true, true, true, true, false, false});
+  EXPECT_EQ(shell.faces.size(), 6u);
   EXPECT_EQ(shell.edges.size(), 13) << "of the hole the upper rim is left";
   EXPECT_THAT(validate(shell.edges), IsEmpty());
-  EXPECT_EQ(common_faces(plate_with_hole(0.2), inside_out(plate_with_hole(0.2))).faces.size(), 0u)
-      << "which side is matter is sure, too";
   StepSolidOptions open;
   open.open = true;
   const SolidCheck check = write_solid_step(shell, "", open);
   EXPECT_TRUE(check.valid) << check.why;
-  EXPECT_NEAR(check.area, 2 - M_PI / 16 + 2 * (2 + 1) * 0.5, 1e-9);
+  EXPECT_NEAR(check.area, 4 - M_PI / 16 + 2 * (2 + 1) * 0.5, 1e-9);
   EXPECT_EQ(check.volume, 0);
   EXPECT_FALSE(write_solid_step(shell, "").valid) << "it is no solid";
 }
 
 // No margin is large enough.
-TEST(FindSolid, FacesThatTheSecondBestChoiceHasTooAreAShell) {
+TEST(FindSolid, FacesThatNoOtherChoiceDoesWithoutAreAShell) {
   SolidOptions surer;
   surer.margin = 1e9;
   const SolidSearch search = find_solid(plate_with_hole(0.2).edges, surer);

@@ -49,14 +49,17 @@ std::vector<Cell> merged(const Sketch& sketch, const std::vector<Matrix3Xd>& pol
 }
 
 // Turns patches so that neighbours run their common stroke in opposite directions; false if that
-// cannot be. Each connected part keeps the sense of its first patch.
-bool turn_alike(std::vector<Patch>* patches, std::vector<int>* part) {
+// cannot be, or if a stroke has one patch and is not open. Each connected part keeps the sense of
+// its first patch.
+bool turn_alike(const std::vector<bool>& open, std::vector<Patch>* patches,
+                std::vector<int>* part) {
   std::map<int, std::vector<std::pair<int, bool>>> uses;  // of a stroke: patch, forward
   for (int p = 0; p < int(patches->size()); ++p)
     for (const HalfEdge& h : half_edges((*patches)[p].cell))
       uses[h.first].emplace_back(p, h.second);
   std::vector<std::vector<std::pair<int, bool>>> beside(patches->size());
   for (const auto& [stroke, of] : uses) {
+    if (of.size() == 1 && open[stroke]) continue;
     if (of.size() != 2) return false;
     const bool same = of[0].second == of[1].second;
     beside[of[0].first].emplace_back(of[1].first, same);
@@ -131,7 +134,7 @@ bool assemble(const Completed& all, const std::vector<Cell>& cells, const Chosen
       patches.push_back({surfaces[i].surface, layout_of(surfaces[i]), cell});
   }
   std::vector<int> part;
-  if (patches.empty() || !turn_alike(&patches, &part)) {
+  if (patches.empty() || !turn_alike(chosen.open, &patches, &part)) {
     *why = patches.empty() ? "no faces close" : "faces cannot be told inside from outside";
     return false;
   }

@@ -4,6 +4,7 @@
 #include <coin/Cbc_C_Interface.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <set>
@@ -145,6 +146,19 @@ void add_doubles(const CellChoice& choice, int first, Programme* programme) {
   }
 }
 
+// Per stroke the column that says whether it is open, or -1. `faces`: sums of the faces at strokes.
+std::vector<int> add_open(const CellChoice& choice, int first,
+                          std::vector<std::map<int, double>>* faces, Programme* programme) {
+  std::vector<int> out(choice.used_price.size(), -1);
+  for (size_t s = 0; s < choice.open_price.size(); ++s) {
+    if (std::isinf(choice.open_price[s])) continue;
+    out[s] = programme->add_column(choice.open_price[s] - choice.unused_price[s]);
+    (*faces)[s][out[s]] = -1;
+    programme->add_row({{out[s], 1}, {first + int(s), 1}}, 'L', 1);
+  }
+  return out;
+}
+
 bool seen_twice(const Double& d, const std::vector<bool>& edge) {
   return !edge[d.stroke] &&
          std::all_of(d.along.begin(), d.along.end(), [&](const std::vector<int>& place) {
@@ -160,7 +174,7 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   if (cells == 0) {  // nothing to choose, which the solver does not like
     ChosenCells none;
     none.stroke.assign(strokes, false);
-    none.twice = none.stroke;
+    none.twice = none.open = none.stroke;
     for (const double price : choice.unused_price) none.price += price;
     return none;
   }
@@ -171,6 +185,7 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   std::vector<std::map<int, double>> faces(strokes);
   for (const auto& [where, side] : sides_of(choice.cells))
     faces[where.first][border(side.first, side.second, &programme)] += 1;
+  const std::vector<int> open = add_open(choice, cells, &faces, &programme);
   for (int s = 0; s < strokes; ++s) {
     faces[s][cells + s] -= 2;
     programme.add_row(faces[s], 'E', 0);
@@ -189,11 +204,13 @@ ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells
   ChosenCells out;
   out.cell.assign(values.begin(), values.begin() + cells);
   out.stroke.assign(values.begin() + cells, values.begin() + cells + strokes);
+  for (const int column : open) out.open.push_back(column >= 0 && values[column]);
   for (int c = 0; c < cells; ++c) out.price += out.cell[c] ? choice.cell_price[c] : 0;
   out.twice.assign(strokes, false);
   for (const Double& d : choice.doubles) out.twice[d.stroke] = seen_twice(d, out.stroke);
   for (int s = 0; s < strokes; ++s)
     out.price += out.stroke[s]  ? choice.used_price[s]
+                 : out.open[s]  ? choice.open_price[s]
                  : out.twice[s] ? std::min(choice.double_price, choice.unused_price[s])
                                 : choice.unused_price[s];
   for (const auto& [pair, saved] : choice.merges)

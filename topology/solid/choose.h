@@ -27,6 +27,9 @@ struct CellChoice {
   std::vector<double> cell_price;              ///< per cell: of its being a part of the boundary
   std::vector<double> used_price;              ///< per stroke: of its being an edge
   std::vector<double> unused_price;            ///< per stroke: of its being none
+  /// Per stroke: of its bordering one face and something that nobody knows; HUGE_VAL: cannot be.
+  /// Empty: no stroke can.
+  std::vector<double> open_price;
   std::vector<std::pair<int, int>> exclusive;  ///< pairs of cells, of which one may be chosen
   std::vector<Cover> covers;
   std::vector<Double> doubles;
@@ -40,10 +43,11 @@ struct ChosenCells {
   std::vector<bool> cell;    ///< is it a part of the boundary?
   std::vector<bool> stroke;  ///< is it an edge, where two faces of different surfaces meet?
   std::vector<bool> twice;   ///< is it none, but another one seen twice?
+  std::vector<bool> open;    ///< is it an edge of one face alone?
   double price = 0;          ///< of all, nat
 };
 
-/// The cheapest choice in which every edge has two faces: an integer programme, solved exactly. A
+/// The cheapest choice in which every edge has two faces, unless it is open: an integer programme, solved exactly. A
 /// stroke between two chosen cells of one surface, or between none, is no edge. Cells that are all
 /// chosen in one of the `other` choices, and no more, are not chosen again. Without any cells
 /// that close: no cells, which is a choice, too. Throws std::runtime_error if that takes more than

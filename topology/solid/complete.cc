@@ -120,7 +120,8 @@ void Completed::add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
 }
 
 void Completed::add(const ImpliedStroke& s) {
-  add(s.smooth ? EdgeOrigin::kSmooth : EdgeOrigin::kFaint, s.kind, s.begin, s.end, s.handles);
+  const EdgeOrigin faint = s.twin ? EdgeOrigin::kCopy : EdgeOrigin::kFaint;
+  add(s.smooth ? EdgeOrigin::kSmooth : faint, s.kind, s.begin, s.end, s.handles);
 }
 
 void imply(double tolerance, double slide, Completed* all) {

@@ -16,7 +16,8 @@ enum class EdgeOrigin {
   kSeen,    ///< images show it
   kSmooth,  ///< its surfaces touch along it: no image can show it
   kFaint,   ///< images should have shown it
-  kCopy     ///< of a loop: the floor of a pocket of which something else tells how deep it is
+  kCopy     ///< strokes ask for it: the floor of a pocket of which something else tells how deep
+            ///< it is, the third edge of two corners
 };
 
 /// A sketch with the edges that its surfaces imply.

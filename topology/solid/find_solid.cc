@@ -13,7 +13,7 @@
 #include "topology/solid/adjust.h"
 #include "topology/solid/assemble.h"
 #include "topology/solid/choose.h"
-#include "topology/solid/common_faces.h"
+#include "topology/solid/keep_faces.h"
 #include "topology/solid/complete.h"
 #include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
@@ -191,19 +191,69 @@ class Search {
   }
   SolidSearch with_copies() { return run(left_); }
 
+  // What can be said where no choice closes, or several do: of the cells that were tried last.
+  // `each`: asks of each face beside an inferred edge whether the strokes can do without.
+  void find_shell(bool each, SolidSearch* out) {
+    constexpr double kLess = 1;  // [nat] than of a stroke that is none
+    choice_.open_price.assign(all_.sketch.size(), HUGE_VAL);
+    for (int s = 0; s < all_.seen.size(); ++s)
+      choice_.open_price[s] = std::min(options_.open_price, choice_.unused_price[s] - kLess);
+    const ChosenCells best = choose_cells(choice_, {}, options_.nodes);
+    if (contradicted(weighed_, best.cell) > options_.contradicted * evidence_.rays.size()) return;
+    for (int s = 0; s < all_.seen.size(); ++s)
+      left_[s] = !best.stroke[s] && !best.twice[s] && !best.open[s];
+    if (2 * std::count(left_.begin(), left_.end(), true) > all_.seen.size()) return;
+    ChosenCells sure = best;
+    sure.open.assign(all_.sketch.size(), true);
+    keep_common(best, choose_cells(choice_, {best}, options_.nodes), &sure.cell);
+    for (size_t c = 0; each && c < sure.cell.size(); ++c)
+      if (sure.cell[c] && borders_inferred(choice_.cells[c]))
+        keep_common(best, best_without(int(c)), &sure.cell);
+    Solid solid;
+    std::vector<int> edge_of;
+    std::string why;
+    if (!assemble(all_, choice_.cells, sure, &solid, &edge_of, &why)) return;
+    solid = without_left(solid, all_, left_);
+    if (solid.faces.empty()) return;
+    out->as_seen = solid.edges;
+    adjust(&solid);
+    out->shell = std::move(solid);
+  }
+
  private:
+  bool borders_inferred(const Cell& cell) const {
+    for (const Loop& loop : cell.loops)
+      for (const LoopStroke& s : loop)
+        if (all_.origin[s.stroke] != EdgeOrigin::kSeen) return true;
+    return false;
+  }
+
+  ChosenCells best_without(int cell) const {
+    constexpr double kNever = 1e4;
+    CellChoice choice = choice_;
+    choice.cell_price[cell] += kNever;
+    return choose_cells(choice, {}, options_.nodes);
+  }
+
+  // Without the cells that a choice which is about as good does without.
+  void keep_common(const ChosenCells& best, const ChosenCells& other,
+                   std::vector<bool>* sure) const {
+    if (other.price - best.price >= options_.margin) return;
+    for (size_t c = 0; c < sure->size(); ++c) (*sure)[c] = (*sure)[c] && other.cell[c];
+  }
+
   // `left` by an earlier choice: strokes that may be others seen twice.
   SolidSearch run(const std::vector<bool>& left) {
     SolidSearch out;
-    EvidenceOfCells weighed;
-    CellChoice choice = price(all_, tolerance_, options_, evidence_, &weighed);
+    CellChoice& choice = choice_;
+    choice = price(all_, tolerance_, options_, evidence_, &weighed_);
     choice.doubles = doubles_of(all_.sketch, left, 3 * tolerance_);
     out.surfaces = int(all_.surfaces.size());
     out.cells = int(choice.cells.size());
     const ChosenCells best = choose_cells(choice, {}, options_.nodes);
     note_left(best, &out);
     out.rays = int(evidence_.rays.size());
-    out.contradicted = contradicted(weighed, best.cell);
+    out.contradicted = contradicted(weighed_, best.cell);
     Solid solid;
     std::vector<int> edge_of;
     if (!assemble(all_, choice.cells, best, &solid, &edge_of, &out.why)) return out;
@@ -211,12 +261,9 @@ class Search {
     const ChosenCells second = choose_cells(choice, {best}, options_.nodes);
     out.margin = second.price - best.price;
     out.why = objection(out);
-    if (out.why.empty()) {
-      out.solid = std::move(solid);
-      note_edges(edge_of, &out);
-    } else if (!contradicts(out)) {
-      note_shell(solid, choice, second, &out);
-    }
+    if (!out.why.empty()) return out;
+    out.solid = std::move(solid);
+    note_edges(edge_of, &out);
     return out;
   }
 
@@ -226,23 +273,6 @@ class Search {
     for (int s = 0; s < sketch_.size(); ++s)
       for (const int now : all_.now[s])
         if (out->edge_of[s] < 0) out->edge_of[s] = edge_of[now];
-  }
-
-  // The faces of a choice that are sure, if any are.
-  void note_shell(const Solid& best, const CellChoice& choice, const ChosenCells& second,
-                  SolidSearch* out) const {
-    Solid sure = best, other;
-    std::vector<int> edge_of;
-    std::string why;
-    if (out->margin < options_.margin) {
-      if (!assemble(all_, choice.cells, second, &other, &edge_of, &why)) return;
-      sure = common_faces(best, other);
-    }
-    sure = without_left(sure, all_, left_);
-    if (sure.faces.empty()) return;
-    out->as_seen = sure.edges;
-    adjust(&sure);
-    out->shell = std::move(sure);
   }
 
   // More masks than a few that are ragged.
@@ -277,6 +307,8 @@ class Search {
   const SolidOptions& options_;
   const SolidEvidence& evidence_;
   Completed all_;
+  EvidenceOfCells weighed_;
+  CellChoice choice_;       // that was tried last
   std::vector<bool> left_;  // per stroke that is seen: it bounds no face of the last choice
 };
 
@@ -320,6 +352,8 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
       last.solid.reset();
       last.why = "curves would have to move far to lie on their faces";
     }
+  } else {
+    searches.front().find_shell(!many, &last);
   }
   return std::move(last);
 }

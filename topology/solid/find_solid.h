@@ -17,8 +17,9 @@ struct SolidOptions {
   double rare_price = 2;
   double smooth_price = 1;  ///< [nat] of an inferred edge along which surfaces touch
   double faint_price = 6;   ///< [nat] of one that images should have shown
-  double copy_price = 2;    ///< [nat] of one of a loop's copy to a depth that strokes tell
+  double copy_price = 2;    ///< [nat] of one that other strokes ask for, see EdgeOrigin
   double double_price = 4;  ///< [nat] of a stroke that is another one, seen twice
+  double open_price = 5;    ///< [nat] at most, of an edge of a shell that borders one face
   double margin = 4;        ///< [nat] by which the second-best choice must be worse
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
@@ -32,9 +33,10 @@ struct SolidSearch {
   Sketch as_seen;            ///< edges of the solid or shell before they were moved onto its faces
   std::string why;           ///< if there is none: a clause
   std::vector<int> edge_of;  ///< per stroke: its edge of the solid, the first if it was cut, or -1
-  /// If there is none, and no mask says otherwise: the faces of the choice - where the second-best
-  /// one is about as good, those that it has, too - but those on surfaces that hold doubtful
-  /// strokes. They need not close.
+  /// If there is none: the faces of the best choice in which edges may border one face alone, if
+  /// it explains half of the strokes and no mask says otherwise, but those without which the
+  /// strokes would be explained about as well, and those on surfaces that hold strokes which are
+  /// not explained.
   std::optional<Solid> shell;
   int faces = 0;              ///< of the best choice
   std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending

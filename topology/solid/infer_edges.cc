@@ -53,7 +53,7 @@ class Inference {
     add_twin_corners();
     std::vector<ImpliedStroke> out;
     for (const auto& [ends, smooth] : lines_)
-      out.push_back({StrokeKind::kLine, ends.first, ends.second, {}, smooth});
+      out.push_back({StrokeKind::kLine, ends.first, ends.second, {}, smooth, twins_.count(ends) > 0});
     add_rims(&out);
     add_arcs(&out);
     return out;
@@ -121,9 +121,13 @@ class Inference {
         if (twin <= int(i)) continue;
         const double back = corners[i].normal.dot(corners[twin].normal) > 0 ? -side : side;
         if (nearest_twin(corners, twin, back) == int(i))
-          if (!joined_.count(std::minmax(corners[i].node, corners[twin].node)))
-            lines_.emplace(std::minmax(corners[i].node, corners[twin].node), false);
+          add_twin(std::minmax(corners[i].node, corners[twin].node));
       }
+  }
+  void add_twin(const std::pair<int, int>& ends) {
+    if (joined_.count(ends)) return;
+    lines_.emplace(ends, false);
+    twins_.insert(ends);
   }
   struct Corner {
     int node;
@@ -261,7 +265,8 @@ class Inference {
   double tolerance_, slide_;
   std::set<std::pair<int, int>> joined_;
   std::vector<std::vector<int>> nodes_;  // of every surface, ascending
-  std::map<std::pair<int, int>, bool> lines_;
+  std::map<std::pair<int, int>, bool> lines_;  // are they smooth?
+  std::set<std::pair<int, int>> twins_;
 };
 
 }  // namespace

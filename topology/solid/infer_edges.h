@@ -16,6 +16,7 @@ struct ImpliedStroke {
   int begin = -1, end = -1;              ///< nodes; -1 of a circle
   std::vector<Eigen::Vector3d> handles;  ///< as many as the kind has
   bool smooth = false;                   ///< its surfaces touch along it: no image can show it
+  bool twin = false;                     ///< between two corners that both lack it
 };
 
 /// Unit tangent of an open stroke in one of its two nodes, into the stroke.

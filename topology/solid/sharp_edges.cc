@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
 #include "topology/solid/surface.h"
@@ -50,6 +51,20 @@ std::vector<bool> sharp(const Solid& solid) {
   return out;
 }
 
+// Does a stroke of the sketch, or one after another, run along all of an edge?
+bool is_there(const Sketch& sketch, const Sketch& edges, int edge, double reach) {
+  constexpr int kPlaces = 8;
+  Vector3d p, d;
+  for (int i = 1; i < kPlaces; ++i) {
+    evaluate_stroke(edges, edge, double(i) / kPlaces, &p, &d);
+    bool near = false;
+    for (int s = 0; s < sketch.size() && !near; ++s)
+      near = distance_to_stroke(sketch, s, p).distance <= reach;
+    if (!near) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 SharpEdges sharp_edges(const SolidSearch& found, bool with_inferred) {
@@ -89,7 +104,7 @@ SharpEdges with_sure_edges(const Sketch& sketch, const SolidSearch& found, doubl
     return out.sketch.add_node(place);
   };
   for (int e = 0; e < shell.edges.size(); ++e) {
-    if (!shell.inferred[e] || !is_sharp[e]) continue;
+    if (!shell.inferred[e] || !is_sharp[e] || is_there(sketch, shell.edges, e, reach)) continue;
     const Stroke& edge = shell.edges.strokes[e];
     std::vector<Vector3d> handles;
     for (int h = 0; h < num_handles(edge.kind); ++h)
