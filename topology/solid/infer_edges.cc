@@ -53,7 +53,8 @@ class Inference {
     add_twin_corners();
     std::vector<ImpliedStroke> out;
     for (const auto& [ends, smooth] : lines_)
-      out.push_back({StrokeKind::kLine, ends.first, ends.second, {}, smooth, twins_.count(ends) > 0});
+      out.push_back(
+          {StrokeKind::kLine, ends.first, ends.second, {}, smooth, twins_.count(ends) > 0});
     add_rims(&out);
     add_arcs(&out);
     return out;
