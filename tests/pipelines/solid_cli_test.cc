@@ -219,7 +219,7 @@ TEST_F(Solids, OfWhichOnlyFacesAreSureAreAShell) {
   if (told["written"]) GTEST_SKIP() << "this part closes";
   EXPECT_EQ(told["shell"]["written"], true);
   EXPECT_GT(int(told["shell"]["faces_sure"]), 2);
-  EXPECT_LT(int(told["shell"]["faces_sure"]), int(told["shell"]["faces_of_best"]));
+  EXPECT_LE(int(told["shell"]["faces_sure"]), int(told["shell"]["faces_of_best"]));
   EXPECT_THAT(text_of_file(result + "/shell.step"), HasSubstr("OPEN_SHELL"));
   ASSERT_EQ(run(reconstruct).status, 0);
   EXPECT_FALSE(fs::exists(result + "/shell.step")) << "it was not asked for";

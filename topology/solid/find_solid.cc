@@ -194,10 +194,7 @@ class Search {
   // What can be said where no choice closes, or several do: of the cells that were tried last.
   // `each`: asks of each face beside an inferred edge whether the strokes can do without.
   void find_shell(bool each, SolidSearch* out) {
-    constexpr double kLess = 1;  // [nat] than of a stroke that is none
-    choice_.open_price.assign(all_.sketch.size(), HUGE_VAL);
-    for (int s = 0; s < all_.seen.size(); ++s)
-      choice_.open_price[s] = std::min(options_.open_price, choice_.unused_price[s] - kLess);
+    if (!out->doubtful.empty()) open_edges();
     const ChosenCells best = choose_cells(choice_, {}, options_.nodes);
     if (contradicted(weighed_, best.cell) > options_.contradicted * evidence_.rays.size()) return;
     for (int s = 0; s < all_.seen.size(); ++s)
@@ -205,13 +202,15 @@ class Search {
     if (2 * std::count(left_.begin(), left_.end(), true) > all_.seen.size()) return;
     ChosenCells sure = best;
     sure.open.assign(all_.sketch.size(), true);
+    Solid solid;
+    std::vector<int> edge_of;
+    std::string why;
+    if (!assemble(all_, choice_.cells, sure, &solid, &edge_of, &why)) return;
+    out->faces = int(solid.faces.size());
     keep_common(best, choose_cells(choice_, {best}, options_.nodes), &sure.cell);
     for (size_t c = 0; each && c < sure.cell.size(); ++c)
       if (sure.cell[c] && borders_inferred(choice_.cells[c]))
         keep_common(best, best_without(int(c)), &sure.cell);
-    Solid solid;
-    std::vector<int> edge_of;
-    std::string why;
     if (!assemble(all_, choice_.cells, sure, &solid, &edge_of, &why)) return;
     solid = without_left(solid, all_, left_);
     if (solid.faces.empty()) return;
@@ -221,6 +220,14 @@ class Search {
   }
 
  private:
+  // Strokes may border one face.
+  void open_edges() {
+    constexpr double kLess = 1;  // [nat] than of a stroke that is none
+    choice_.open_price.assign(all_.sketch.size(), HUGE_VAL);
+    for (int s = 0; s < all_.seen.size(); ++s)
+      choice_.open_price[s] = std::min(options_.open_price, choice_.unused_price[s] - kLess);
+  }
+
   bool borders_inferred(const Cell& cell) const {
     for (const Loop& loop : cell.loops)
       for (const LoopStroke& s : loop)

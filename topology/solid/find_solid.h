@@ -33,12 +33,12 @@ struct SolidSearch {
   Sketch as_seen;            ///< edges of the solid or shell before they were moved onto its faces
   std::string why;           ///< if there is none: a clause
   std::vector<int> edge_of;  ///< per stroke: its edge of the solid, the first if it was cut, or -1
-  /// If there is none: the faces of the best choice in which edges may border one face alone, if
-  /// it explains half of the strokes and no mask says otherwise, but those without which the
-  /// strokes would be explained about as well, and those on surfaces that hold strokes which are
-  /// not explained.
+  /// If there is none: the faces of the best choice - where strokes are left over, of the best one
+  /// in which they may border one face alone - if it explains half of the strokes and no mask says
+  /// otherwise, but those without which the strokes would be explained about as well, and those on
+  /// surfaces that hold strokes which are not explained.
   std::optional<Solid> shell;
-  int faces = 0;              ///< of the best choice
+  int faces = 0;              ///< of the best choice, one of a shell if it is that
   std::vector<int> doubtful;  ///< strokes that no face of the choice explains, ascending
   int twice = 0;              ///< strokes that are other edges of the choice seen twice
   double margin = 0;          ///< [nat] by which the second-best choice is worse
