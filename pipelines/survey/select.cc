@@ -83,13 +83,6 @@ std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& worl
   return round;
 }
 
-// Logarithm of the likelihood ratio of an edge and of no edge, which is as likely one thing as the
-// other: of those of an edge and of either.
-double against_both(double nothing, double round) {
-  const double least = std::min(nothing, round);
-  return least - std::log(0.5 * (std::exp(least - nothing) + std::exp(least - round)));
-}
-
 // [px] A pixel, or more where cameras err: three standard deviations of what strokes stand off.
 double reach_of_edgels(const Sketch& sketch, const EdgeWorld& world, MatchOptions match) {
   constexpr double kLeast = 1, kMost = 3;
@@ -100,6 +93,12 @@ double reach_of_edgels(const Sketch& sketch, const EdgeWorld& world, MatchOption
 }
 
 }  // namespace
+
+double edge_nats(double nothing, double round) {
+  constexpr double kRounds = 0.5;
+  const double least = std::min(nothing, round);
+  return least - std::log(std::exp(least - nothing) + kRounds * std::exp(least - round));
+}
 
 const char* verdict_name(Verdict verdict) {
   static const char* const names[] = {"kept", "short", "round", "unlikely", "redundant"};
@@ -150,7 +149,7 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
       const double edge = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
       const double no_round = -rounds.nats(i, &others);
-      result.nats[i] = against_both(edge, no_round);
+      result.nats[i] = edge_nats(edge, no_round);
       verdict = result.nats[i] > options.least_nats ? Verdict::kKept
                 : edge > no_round                   ? Verdict::kRound
                                                     : Verdict::kUnlikely;

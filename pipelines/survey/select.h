@@ -11,10 +11,10 @@
 namespace sketchsplat {
 
 struct SelectOptions {
-  int min_views = 4;           ///< that must see a stroke by edgels no better stroke explains
-  double least_nats = 0;       ///< [nat] logarithm of its likelihood ratio, see likelihood.h
-  double min_length_px = 4.0;  ///< [px]
-  double price = 3;            ///< [nat] of a parameter, see SegmentOptions
+  int min_views = 4;            ///< that must see a stroke by edgels no better stroke explains
+  double least_nats = 0;        ///< [nat] logarithm of its likelihood ratio, see likelihood.h
+  double min_length_px = 4.0;   ///< [px]
+  double price = 3;             ///< [nat] of a parameter, see SegmentOptions
   double place_sigma_px = 0.2;  ///< [px] see place_sigma_px
   EvidenceModel evidence;
   RoundModel round;
@@ -33,6 +33,11 @@ enum class Verdict {
   kRedundant,  ///< better strokes explain its edgels
 };
 const char* verdict_name(Verdict verdict);
+
+/// [nat] Logarithm of the odds of an edge, from its likelihood ratios [nat] to nothing and to a
+/// round. Nothing is beforehand as likely as an edge, as if there were no rounds; a round half as
+/// likely, so that a stroke stays where nothing tells whether it is one.
+double edge_nats(double nothing, double round);
 
 struct Selection : PassResult {
   std::vector<Verdict> verdicts;   ///< one per stroke that came in

@@ -44,6 +44,16 @@ TEST(Select, TrueEdgesAreKept) {
   }
 }
 
+TEST(Select, WhatIsSurelyNoRoundIsNoMoreAnEdgeForIt) {
+  constexpr double kSure = 1000;
+  for (const double nats : {-5.0, -0.5, 0.5, 30.0}) {
+    EXPECT_NEAR(edge_nats(nats, kSure), nats, 1e-9);
+    EXPECT_LT(edge_nats(nats, 0), nats);
+  }
+  EXPECT_GT(edge_nats(kSure, 0), 0) << "where nothing tells whether it is a round";
+  EXPECT_LT(edge_nats(kSure, -1), 0);
+}
+
 TEST(Select, TheContourOfASphereIsNoEdgeWhateverCircleStandsForIt) {
   Sketch s = cube();
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0.6, 0, 0.8)})
