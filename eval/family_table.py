@@ -6,9 +6,10 @@ Of each family (a built-in part whose parameters are drawn anew for every seed),
 reconstructed from 24 views of 400 x 400 px each. One more, left out, is reconstructed from 50, 10,
 5 and 3 views, cold and like its siblings; and like the siblings of another family, which must not
 change it. Printed: F5 and the F of strokes as in `evaluate`, seconds of CPU, and whether the
-siblings were followed. Scenes and results that are there already are used again.
+siblings were followed; --chart draws them. Scenes and results that are there already are used
+again.
 
-  eval/family_table.py --binary build/pipelines/sketchsplat --work DIR [--siblings 5]
+  eval/family_table.py --binary build/pipelines/sketchsplat --work DIR [--chart docs/family.svg]
 """
 
 import argparse
@@ -82,6 +83,56 @@ class Table:
                 "followed": report["counts"].get("family_followed", 0)}
 
 
+SERIES = [("cold", "#888", ""), ("warm", "#06c", ""), ("foreign", "#c60", "3 3")]
+LABELS = {"cold": "cold", "warm": "like its siblings", "foreign": "like another family"}
+PANEL, LEFT, TOP, GAP = (140, 110), 46, 46, 26  # px
+
+
+def panel(rows, family, key, most, x0, y0):
+    """Lines of one family: `key` of 0 to `most` over the number of views, as it is in the list."""
+    width, height = PANEL
+    of = [r for r in rows if r["family"] == family]
+    x = [x0 + width * (k + 0.5) / len(of) for k in range(len(of))]
+    out = [f'<rect x="{x0}" y="{y0}" width="{width}" height="{height}" fill="none" '
+           'stroke="#ccc"/>']
+    for name, colour, dashes in SERIES:
+        y = [y0 + height * (1 - r[name][key] / most) for r in of]
+        points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y))
+        out.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2" '
+                   f'stroke-dasharray="{dashes}"/>')
+    out += [f'<text x="{a:.1f}" y="{y0 + height + 13}" text-anchor="middle">{r["views"]}</text>'
+            for a, r in zip(x, of)]
+    return out
+
+
+def chart(rows):
+    """SVG: F5 above, seconds below, a column for each family."""
+    families = list(dict.fromkeys(r["family"] for r in rows))
+    slowest = max(r[name]["seconds"] for r in rows for name, _, _ in SERIES)
+    width = LEFT + len(families) * (PANEL[0] + GAP)
+    height = TOP + 2 * (PANEL[1] + GAP) + 16
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
+           'font-family="sans-serif" font-size="11">',
+           f'<rect width="{width}" height="{height}" fill="#fff"/>']
+    for k, (name, colour, dashes) in enumerate(SERIES):
+        x = LEFT + 150 * k
+        out += [f'<line x1="{x}" y1="12" x2="{x + 22}" y2="12" stroke="{colour}" '
+                f'stroke-width="2" stroke-dasharray="{dashes}"/>',
+                f'<text x="{x + 28}" y="16">{LABELS[name]}</text>']
+    for row, (key, most, title) in enumerate([("f5", 100, "F5"), ("seconds", slowest, "s of CPU")]):
+        y = TOP + row * (PANEL[1] + GAP)
+        out += [f'<text x="4" y="{y + PANEL[1] / 2}">{title.split(" ")[0]}</text>',
+                f'<text x="{LEFT - 4}" y="{y + 9}" text-anchor="end">{most:.0f}</text>',
+                f'<text x="{LEFT - 4}" y="{y + PANEL[1]}" text-anchor="end">0</text>']
+        for k, family in enumerate(families):
+            x = LEFT + k * (PANEL[0] + GAP)
+            if row == 0:
+                out.append(f'<text x="{x}" y="{y - 6}" font-weight="bold">{family}</text>')
+            out += panel(rows, family, key, most, x, y)
+    out.append(f'<text x="{LEFT}" y="{height - 4}">number of views</text></svg>')
+    return "\n".join(out) + "\n"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--binary", required=True)
@@ -89,7 +140,9 @@ def main():
     parser.add_argument("--siblings", type=int, default=5)
     parser.add_argument("--families", nargs="*", default=list(FAMILIES))
     parser.add_argument("--views", type=int, nargs="*", default=[50, 10, 5, 3])
+    parser.add_argument("--chart", help="SVG file to write")
     arguments = parser.parse_args()
+    rows = []
     table = Table(arguments)
     siblings = {}
     for family in arguments.families:
@@ -107,12 +160,17 @@ def main():
                 table.numbers(scene, table.result(scene, name, like))
                 for name, like in (("cold", ()), ("warm", siblings[family]),
                                    ("foreign", siblings[other]))]
+            rows.append({"family": family, "views": views, "cold": cold, "warm": warm,
+                         "foreign": foreign})
             note = "" if warm["followed"] else " (not followed)"
             taken = " (followed)" if foreign["followed"] else ""
             print(f"| {family} | {views} | {cold['f5']:.1f} | {warm['f5']:.1f}{note} | "
                   f"{foreign['f5']:.1f}{taken} | {cold['strokes']:.1f} | {warm['strokes']:.1f} | "
                   f"{cold['seconds']:.1f} | {warm['seconds']:.1f} | {foreign['seconds']:.1f} |",
                   flush=True)
+    if arguments.chart:
+        with open(arguments.chart, "w") as file:
+            file.write(chart(rows))
 
 
 if __name__ == "__main__":
