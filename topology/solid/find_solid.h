@@ -24,7 +24,7 @@ struct SolidOptions {
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
   int many_surfaces = 150;  ///< with more candidates it is not searched more than once
-  int nodes = 20000;        ///< of the search tree for the choice
+  int nodes = 200;          ///< of the search tree for the choice, which takes few if it is clear
   EvidencePrices evidence;
 };
 
