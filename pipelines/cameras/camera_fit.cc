@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,15 +26,15 @@ using StrokeMatrix = Matrix<double, kStroke, kStroke>;
 
 constexpr double kRank = 1e-7;        // of the largest eigenvalue: strokes slide along themselves
 constexpr double kLeastSigma = 0.05;  // [px] of an edgel, and of a stroke in a view
-constexpr double kBiweight = 4.685;    // standard deviations: 95 % efficient
+constexpr double kBiweight = 4.685;   // standard deviations: 95 % efficient
 constexpr double kLeastRadius = 8;    // [px] of the object's image
 
 // One edgel that a stroke was matched with.
 struct Row {
   int stroke, sample, view;
   Vector2d edgel, normal;  // in the image
-  double match, weight;  // biweight of the match; what the edgel counts
-  int offset;  // index of the pair (stroke, view)
+  double match, weight;    // biweight of the match; what the edgel counts
+  int offset;              // index of the pair (stroke, view)
 };
 
 struct Linear {
@@ -72,6 +73,7 @@ class System {
 
   void solve(int steps);
   CameraFit result(const Sketch& joined);
+  CameraEvidence evidence();
 
  private:
   struct State {
@@ -90,7 +92,8 @@ class System {
   double distance(const Row& row, Linear* linear, const PointJacobian* moves = nullptr) const;
   double cost() const;
   void linearise(std::vector<Linear>* rows) const;
-  void assemble(const std::vector<Linear>& rows, double damping);
+  // Of strokes s with s % 2 == half alone; -1: of all.
+  void assemble(const std::vector<Linear>& rows, double damping, int half = -1);
   State step() const;
   double offset_px() const;
   double scale_sigma() const;
@@ -108,7 +111,7 @@ class System {
   std::vector<int> of_stroke_;  // rows of stroke s: of_stroke_[s] .. of_stroke_[s + 1] - 1
   std::vector<std::vector<int>> of_view_;
   int offsets_ = 0;
-  double scatter_ = 0, before_ = 0;
+  double scatter_ = 0, offset_sigma_ = 0, before_ = 0;
   std::vector<Normal> normals_;
   MatrixXd hessian_;  // of the cameras alone, strokes eliminated
   VectorXd gradient_;
@@ -170,11 +173,11 @@ void System::weigh() {
     within.push_back(std::abs(d[i] - sum[rows_[i].offset] / weight[rows_[i].offset]));
   scatter_ = std::max(kLeastSigma, 1.4826 * median(within));
   for (int k = 0; k < offsets_; ++k) common.push_back(std::abs(sum[k] / weight[k]));
-  const double shared = std::max(kLeastSigma, 1.4826 * median(common));
+  offset_sigma_ = std::max(kLeastSigma, 1.4826 * median(common));
   for (Row& row : rows_) {
-    const double r = sum[row.offset] / weight[row.offset] / (kBiweight * shared);
+    const double r = sum[row.offset] / weight[row.offset] / (kBiweight * offset_sigma_);
     row.weight *= r * r < 1 ? std::pow(1 - r * r, 2) : 0;
-    row.weight /= scatter_ * scatter_ + count[row.offset] * shared * shared;
+    row.weight /= scatter_ * scatter_ + count[row.offset] * offset_sigma_ * offset_sigma_;
   }
 }
 
@@ -237,7 +240,7 @@ void System::linearise(std::vector<Linear>* out) const {
 }
 
 // Normal equations of the strokes, and what is left of those of the cameras without them.
-void System::assemble(const std::vector<Linear>& rows, double damping) {
+void System::assemble(const std::vector<Linear>& rows, double damping, int half) {
   const int n = int(kinds_.size()), size = cameras_.size();
   normals_.resize(n);
 #pragma omp parallel for schedule(dynamic, 1)
@@ -246,6 +249,8 @@ void System::assemble(const std::vector<Linear>& rows, double damping) {
     StrokeMatrix A = StrokeMatrix::Zero();
     normal.gradient.setZero();
     normal.cross = MatrixXd::Zero(kStroke, size);
+    normal.inverse.setZero();
+    if (half >= 0 && s % 2 != half) continue;
     for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
       const Linear& r = rows[i];
       const int camera = cameras_.camera_of(rows_[i].view), shared = cameras_.num_shared(camera);
@@ -257,7 +262,6 @@ void System::assemble(const std::vector<Linear>& rows, double damping) {
       normal.cross.middleCols(cameras_.shared_column(camera), shared).noalias() +=
           j * r.shared.head(shared).transpose();
     }
-    normal.inverse.setZero();
     if (!(A.trace() > 0) || !A.allFinite()) continue;
     const Eigen::SelfAdjointEigenSolver<StrokeMatrix> es(A);
     const double largest = es.eigenvalues()[kStroke - 1];
@@ -275,6 +279,7 @@ void System::assemble(const std::vector<Linear>& rows, double damping) {
     Matrix<double, kPose, kShared> mixed = Matrix<double, kPose, kShared>::Zero();
     Matrix<double, kShared, kShared> both = Matrix<double, kShared, kShared>::Zero();
     for (const int i : of_view_[v]) {
+      if (half >= 0 && rows_[i].stroke % 2 != half) continue;
       const Linear& r = rows[i];
       const double w = rows_[i].weight;
       poses.noalias() += w * r.pose * r.pose.transpose();
@@ -342,19 +347,21 @@ double System::scale_sigma() const {
 
 void System::solve(int steps) {
   constexpr double kEnough = 1e-6;  // of the cost
+  constexpr int kTrials = 6;
   std::vector<Linear> rows;
   double damping = 1e-6, least = cost();
   for (int round = 0; round < steps; ++round) {
     linearise(&rows);
     const State before = now_;
     const double last = least;
-    for (int trial = 0; trial < 6; ++trial) {
+    for (int trial = 0; trial < kTrials; ++trial) {
       assemble(rows, damping);
       place(step());
       least = cost();
       if (least <= last) break;
-      damping = 30 * damping;
-      place(before), least = last;
+      place(before);
+      if (least - last < kEnough * last) trial = kTrials;  // round-off
+      least = last, damping = 30 * damping;
     }
     damping = std::max(1e-6, damping / 30);
     if (!(last - least > kEnough * last)) break;
@@ -384,6 +391,53 @@ Sketch System::meet(const Sketch& joined) const {
   return out;
 }
 
+// What halves of the strokes say of some unknowns, and what confirms it.
+struct Confirmed {
+  double sigmas = 0, told = 0;  // told: the sum of squares that it explains
+};
+Confirmed confirm(const std::array<MatrixXd, 2>& hessian, const std::array<VectorXd, 2>& gradient,
+                  const VectorXd& information) {
+  Confirmed out;
+  for (const int half : {0, 1}) {
+    MatrixXd held = hessian[1 - half];
+    held.diagonal() += information;
+    const VectorXd move = -held.ldlt().solve(gradient[1 - half]);
+    const double fits = -move.dot(gradient[half]), spread = move.dot(hessian[half] * move);
+    if (!(spread > 0)) continue;
+    out.sigmas += fits / std::sqrt(2 * spread);
+    out.told += fits;
+  }
+  return out;
+}
+
+CameraEvidence System::evidence() {
+  std::vector<Linear> rows;
+  linearise(&rows);
+  const int poses = kPose * cameras_.views(), shared = cameras_.size() - poses;
+  const VectorXd& information = cameras_.information();
+  std::array<MatrixXd, 2> of_poses, of_shared;
+  std::array<VectorXd, 2> by_poses, by_shared;
+  for (const int half : {0, 1}) {
+    assemble(rows, 0, half);
+    gradient_ -= information.cwiseProduct(now_.cameras);
+    const auto cross = hessian_.topRightCorner(poses, shared);
+    const MatrixXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross);
+    of_shared[half] = hessian_.bottomRightCorner(shared, shared) - cross.transpose() * follow;
+    of_shared[half].diagonal() -= information.tail(shared);
+    by_shared[half] = gradient_.tail(shared) - follow.transpose() * gradient_.head(poses);
+    of_poses[half] = hessian_.topLeftCorner(poses, poses);
+    of_poses[half].diagonal() -= information.head(poses);
+    by_poses[half] = gradient_.head(poses);
+  }
+  const Confirmed moved = confirm(of_poses, by_poses, information.head(poses));
+  CameraEvidence out;
+  out.offset_px = before_;
+  out.poses = moved.sigmas;
+  out.error_px = offset_sigma_ * std::sqrt(std::max(0.0, moved.told) / std::max(1, offsets_));
+  if (shared > 0) out.shared = confirm(of_shared, by_shared, information.tail(shared)).sigmas;
+  return out;
+}
+
 CameraFit System::result(const Sketch& joined) {
   CameraFit out;
   out.views = cameras_.current();
@@ -395,15 +449,6 @@ CameraFit System::result(const Sketch& joined) {
   linearise(&rows);
   assemble(rows, 0);
   out.scale_sigma = scale_sigma();
-  const int poses = kPose * cameras_.views(), shared = cameras_.size() - poses;
-  if (shared > 0) {
-    const VectorXd value = now_.cameras.tail(shared);
-    const MatrixXd cross = hessian_.topRightCorner(poses, shared);
-    const VectorXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross * value);
-    out.shared_gain = value.dot(hessian_.bottomRightCorner(shared, shared) * value) -
-                      (cross * value).dot(follow);
-    out.shared = shared;
-  }
   return out;
 }
 
@@ -414,6 +459,12 @@ CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, cons
   System system(sketch, observation, world, stated, prior);
   system.solve(steps);
   return system.result(sketch);
+}
+
+CameraEvidence camera_evidence(const Sketch& sketch, const Observation& observation,
+                               const EdgeWorld& world, const std::vector<View>& stated,
+                               const CameraPrior& prior) {
+  return System(sketch, observation, world, stated, prior).evidence();
 }
 
 }  // namespace sketchsplat

@@ -17,11 +17,8 @@ struct CameraFit {
   double after_px = 0;     ///< and after it
   int offsets = 0;         ///< number of these: a stroke in a view
   int unknowns = 0;        ///< of the cameras
-  double shared_gain = 0;  ///< by which the sum of squares, in variances, is smaller because what
-                           ///< the views of a camera share (focal length, centre, lens) has moved
-  int shared = 0;          ///< number of such unknowns
   double scale_sigma = 0;  ///< relative, of the size of all strokes: what the cameras leave open
-  std::vector<double> radius_px;           ///< per view: of the object's image
+  std::vector<double> radius_px;  ///< per view: of the object's image
 };
 
 /// Moves cameras and strokes, by Levenberg and Marquardt's method, so that the squared distances of
@@ -33,5 +30,21 @@ struct CameraFit {
 /// it counts; world.views, which the observation was made with, are where the search begins.
 CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
                       const std::vector<View>& stated, const CameraPrior& prior, int steps);
+
+/// Whether cameras err, from what strokes tell that other strokes confirm.
+struct CameraEvidence {
+  double offset_px = 0;  ///< robust standard deviation of the offsets of strokes in views
+  double error_px = 0;   ///< root mean square of that part of the offsets which poses make
+  double poses = 0;      ///< standard normal, if poses are exact and strokes err by themselves
+  double shared = 0;     ///< the same if what views share is right, whatever the poses are
+};
+
+/// Two halves of the strokes each say how the cameras err, and each is asked whether that fits its
+/// own offsets r, too: by moves d of them which the other half tells, d.r is normal with variance
+/// d.d where cameras are right, in standard deviations of offsets; else its mean is d.d. One linear
+/// step from world.views. For what views share, each half has poses of its own.
+CameraEvidence camera_evidence(const Sketch& sketch, const Observation& observation,
+                               const EdgeWorld& world, const std::vector<View>& stated,
+                               const CameraPrior& prior);
 
 }  // namespace sketchsplat

@@ -17,21 +17,22 @@ namespace sketchsplat {
 namespace {
 
 constexpr double kReachPx = 2, kSpacingPx = 6;
-constexpr double kOffPx = 0.15;      // strokes of exact cameras have offsets of 0.03 to 0.09 px
-constexpr double kOfScatter = 0.75;  // where edgels are vague, offsets are larger
-constexpr double kSure = 4;          // standard deviations of chi squared beyond its mean
-constexpr double kExactPx = 0.02;    // poses err at least by this
-constexpr double kLoose = 3;         // times the offsets, which do not reach beyond the matches
-constexpr double kLowShare = 0.4;    // of the edgels: strokes that explain less may be accidents
+constexpr double kErrPx = 0.075;      // what poses that err less make of strokes is no matter
+constexpr double kRare = 1.645;       // standard deviations: exact poses in one scene of twenty
+constexpr double kSure = 4;           // of what views share, which changes scale and place
+constexpr double kExactPx = 0.02;     // poses err at least by this
+constexpr double kLoose = 3;          // times the offsets, which do not reach beyond the matches
+constexpr double kLowShare = 0.4;     // of the edgels: strokes that explain less may be accidents
 constexpr double kChanceShare = 0.2;  // and these are compared with accidents
 constexpr double kTimesChance = 2;
 constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be mended
 constexpr double kNoWorse = 0.9;     // times the edgels that are explained, for cameras to move;
                                      // none fewer among things, whose few strokes fit any cameras
-constexpr double kMovedPx = 0.3;     // strokes are lifted again
+constexpr double kStillPx = 0.1;     // strokes stay as they were lifted
+constexpr double kMovedPx = 0.3;     // they are lifted, and cameras are fitted again
 constexpr int kFewestViews = 3, kMostLifts = 5;
-constexpr int kEnoughViews = 8;      // where most edges are seen by as many as a point takes
-constexpr double kAwry = 0.05;       // of the width of a picture: nothing but accidents fits
+constexpr int kEnoughViews = 8;  // where most edges are seen by as many as a point takes
+constexpr double kAwry = 0.05;   // of the width of a picture: nothing but accidents fits
 
 struct Posed {
   EdgeWorld world;
@@ -72,15 +73,10 @@ void find_strokes(const ReconstructOptions& options, Progress* progress, Posed* 
   }
 }
 
-// That a focal length, centre or lens is wrong: the gain is that of chance, distributed as
-// chi squared with so many degrees of freedom, if none is.
-bool is_sure(const CameraFit& fit) {
-  return fit.shared_gain > fit.shared + kSure * std::sqrt(2.0 * fit.shared);
-}
-
 // What the first strokes say of the cameras.
 struct Misfit {
   double offset_px = 0, pose_px = 0;   // of strokes in views; and without what views share
+  double error_px = 0;                 // of the poses, in these offsets
   bool poses = false, shared = false;  // shared: focal length, centre or lens
   int rows = 0;
 };
@@ -92,14 +88,14 @@ Misfit misfit(const Posed& posed) {
   out.rows = int(o.matches.matches.size());
   if (out.rows == 0) return out;
   const std::vector<View>& stated = posed.world.views;
+  const CameraEvidence evidence = camera_evidence(posed.sketch, o, posed.world, stated, {});
+  out.offset_px = out.pose_px = evidence.offset_px, out.error_px = evidence.error_px;
+  out.poses = evidence.poses > kRare && evidence.error_px > kErrPx;
+  out.shared = evidence.shared > kSure;
+  if (!out.shared) return out;
   CameraPrior prior;
-  const CameraFit as_stated = fit_cameras(posed.sketch, o, posed.world, stated, prior, 0);
-  out.offset_px = as_stated.before_px;
-  out.poses = out.offset_px > std::max(kOffPx, kOfScatter * as_stated.scatter_px);
   prior.pose_px = kExactPx;
-  const CameraFit fit = fit_cameras(posed.sketch, o, posed.world, stated, prior, 3);
-  out.shared = is_sure(fit);
-  out.pose_px = out.shared ? fit.after_px : out.offset_px;
+  out.pose_px = fit_cameras(posed.sketch, o, posed.world, stated, prior, 3).after_px;
   return out;
 }
 
@@ -146,8 +142,7 @@ double moved_px(const Sketch& sketch, const std::vector<View>& a, const std::vec
 // Cameras that pictures of 1 / factor the size make, for those of full size.
 std::vector<View> enlarged(const std::vector<View>& coarse, std::vector<View> fine, int factor) {
   for (size_t v = 0; v < fine.size(); ++v) {
-    fine[v].camera =
-        coarse[v].camera.enlarged(factor, fine[v].camera.width, fine[v].camera.height);
+    fine[v].camera = coarse[v].camera.enlarged(factor, fine[v].camera.width, fine[v].camera.height);
     fine[v].cam_from_world = coarse[v].cam_from_world;
     fine[v].lens = coarse[v].lens;
   }
@@ -244,7 +239,7 @@ bool shared_is_wrong(const Posed& posed, const std::vector<View>& stated, Camera
   const Observation o = look(posed, kReachPx);
   if (o.matches.matches.empty()) return false;
   prior.shared = true;
-  return is_sure(fit_cameras(posed.sketch, o, posed.world, stated, prior, 3));
+  return camera_evidence(posed.sketch, o, posed.world, stated, prior).shared > kSure;
 }
 
 // Moves cameras and strokes, and lifts again while that moves them; the offsets that are left.
@@ -252,10 +247,15 @@ double settle(const std::vector<View>& stated, const CameraPrior& prior,
               const ReconstructOptions& options, Progress* progress, Posed* posed) {
   for (int round = 0;; ++round) {
     const std::vector<View> before = posed->world.views;
+    const Sketch lifted = posed->sketch;
     const double after = refine(stated, prior, posed);
     const double moved =
         moved_px(posed->sketch, before, posed->world.views, posed->world.footprint * kSpacingPx);
     posed->world = refreshed(std::move(posed->world));
+    if (moved < kStillPx) {
+      posed->sketch = lifted;
+      return after;
+    }
     find_strokes(options, progress, posed);
     if (round == kMostLifts || moved < kMovedPx) return after;
   }
@@ -327,8 +327,9 @@ void append(const RunReport& from, RunReport* to) {
 void tell(const Explained& shares, const Misfit& off, Progress* progress) {
   if (!progress) return;
   char text[160];
-  std::snprintf(text, sizeof text, "cameras: strokes explain %.0f %%, are off by %.3f px%s",
-                100 * shares.share, off.offset_px,
+  std::snprintf(text, sizeof text,
+                "cameras: strokes explain %.0f %%, are off by %.3f px, by %.3f px for poses%s",
+                100 * shares.share, off.offset_px, off.error_px,
                 off.shared ? ", another focal length or lens fits" : "");
   progress->note(text);
 }

@@ -77,8 +77,7 @@ double shape_error(const Sketch& found) {
   const Eigen::Matrix4d T = Eigen::umeyama(from, to, true);
   double worst = 0;
   for (int i = 0; i < from.cols(); ++i)
-    worst = std::max(
-        worst, distance_to(truth, (T * from.col(i).homogeneous()).hnormalized()));
+    worst = std::max(worst, distance_to(truth, (T * from.col(i).homogeneous()).hnormalized()));
   return worst;
 }
 
@@ -151,6 +150,23 @@ TEST(RefinePoses, ExactCamerasAreLeftAlone) {
   EXPECT_FALSE(untouched.refined);
   EXPECT_EQ(json_of(untouched.sketch), json_of(posed(views, views, &b, "off").sketch));
   EXPECT_THAT(a.warnings, testing::IsEmpty());
+}
+
+TEST(RefinePoses, EdgesThatErrByThemselvesAreNoReasonToMoveExactCameras) {
+  const std::vector<View> views = ring_of_views(20, kMiddle, 3);
+  std::vector<EdgelMap> maps = pictures(views);
+  for (size_t v = 0; v < maps.size(); ++v)
+    for (int c = 0; c < maps[v].num_chains(); ++c) {
+      const double off =
+          0.4 * std::sin(7.0 * c + 3.0 * double(v * v));  // [px] of an edge in a view
+      for (int i = maps[v].chain[c]; i < maps[v].chain[c + 1]; ++i) {
+        Edgel& e = maps[v].edgels[i];
+        e.x += float(off * e.nx), e.y += float(off * e.ny);
+      }
+    }
+  const ReconstructOptions options;
+  RunReport report;
+  EXPECT_FALSE(pose_and_fit(make_edge_world(views, maps), options, &report, nullptr).refined);
 }
 
 TEST(RefinePoses, CamerasThatErrComeBack) {
