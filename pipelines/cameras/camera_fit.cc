@@ -410,6 +410,17 @@ Confirmed confirm(const std::array<MatrixXd, 2>& hessian, const std::array<Vecto
   return out;
 }
 
+// How much more alike the gradients of two halves are than by chance, in standard deviations: of
+// independent ones, a.M.b has variance tr(M A M B), for any M; this one is that of all strokes.
+double alike(const std::array<MatrixXd, 2>& hessian, const std::array<VectorXd, 2>& gradient,
+             const VectorXd& information) {
+  MatrixXd both = hessian[0] + hessian[1];
+  both.diagonal() += information;
+  const Eigen::LDLT<MatrixXd> inverse(both);
+  const double variance = (inverse.solve(hessian[0]) * inverse.solve(hessian[1])).trace();
+  return variance > 0 ? gradient[0].dot(inverse.solve(gradient[1])) / std::sqrt(variance) : 0;
+}
+
 CameraEvidence System::evidence() {
   std::vector<Linear> rows;
   linearise(&rows);
@@ -434,7 +445,7 @@ CameraEvidence System::evidence() {
   out.offset_px = before_;
   out.poses = moved.sigmas;
   out.error_px = offset_sigma_ * std::sqrt(std::max(0.0, moved.told) / std::max(1, offsets_));
-  if (shared > 0) out.shared = confirm(of_shared, by_shared, information.tail(shared)).sigmas;
+  if (shared > 0) out.shared = alike(of_shared, by_shared, information.tail(shared));
   return out;
 }
 

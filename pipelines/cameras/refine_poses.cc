@@ -91,11 +91,13 @@ Misfit misfit(const Posed& posed) {
   const CameraEvidence evidence = camera_evidence(posed.sketch, o, posed.world, stated, {});
   out.offset_px = out.pose_px = evidence.offset_px, out.error_px = evidence.error_px;
   out.poses = evidence.poses > kRare && evidence.error_px > kErrPx;
-  out.shared = evidence.shared > kSure;
+  CameraPrior held;
+  held.pose_px = kExactPx;
+  // Poses that nothing contradicts do not take up what another focal length or lens explains.
+  out.shared = (out.poses ? evidence : camera_evidence(posed.sketch, o, posed.world, stated, held))
+                   .shared > kSure;
   if (!out.shared) return out;
-  CameraPrior prior;
-  prior.pose_px = kExactPx;
-  out.pose_px = fit_cameras(posed.sketch, o, posed.world, stated, prior, 3).after_px;
+  out.pose_px = fit_cameras(posed.sketch, o, posed.world, stated, held, 3).after_px;
   return out;
 }
 
