@@ -4,9 +4,10 @@
 can be relied on.
 
 Makes scenes of the built-in parts (24 views of 400 x 400 px) with exact poses and with poses that
-err as those that a tracker finds in photographs, and reconstructs them. Of two parts of three it
-takes how far every curve is from the truth, and fits the numbers so that it surprises least (--fit;
-written to WORK/calibration.json). Then it asks, by tenths of what is stated,
+err as those that a tracker finds in photographs, and reconstructs them. Of the parts drawn by the
+seeds of --fit-seeds it takes how far every curve is from the truth, and fits the numbers so that it
+surprises least (--fit; written to WORK/calibration.json). Then it asks of the other seeds, by
+tenths of what is stated,
 
  - known: how often what was measured lies within the tolerance of the truth;
  - within: every second edge of the truth is moved by up to three tolerances, and that is taken as
@@ -33,7 +34,6 @@ bent-sheet fillet-block fillet-step ridge-block crease-disc countersunk-plate ob
 ellipse-plate boss-plate corner-block slot-disc knob keyed-hub elbow groove-shaft ball-stud
 dished-cap cross-drilled spline-plate wave-block loft-grip swept-rail freeform-pad
 ridge-cylinder""".split()
-FITTED = [k % 3 != 2 for k in range(len(PARTS))]
 
 VIEWS = "--views 24 --resolution 400 --object-size 0.7 --noise 3 --outputs none".split()
 CONDITIONS = {"exact poses": [], "poses off by 0.2 px": ["--pose-noise", "0.2"],
@@ -79,7 +79,7 @@ def pieces_of(scene, binary):
     scene.inspect(binary, scene.result, scene.truth, "pieces", 0.001, ["--pieces"])
     with open(scene.inspections + "/pieces/inspection_pieces.json") as file:
         pieces = [p for p in json.load(file)["pieces"] if p["presence"] == "found"]
-    return [p for p in pieces if len(p["deviation"]) == 2 * PLACES]
+    return [p for p in pieces if len(p["deviation"]) == 2 * PLACES and p["sigma"] > 0]
 
 
 PLACES = 5  # of a piece
@@ -90,8 +90,9 @@ FLOOR_PX = 0.003
 # SigmaOptions, where the fit starts.
 START = {"straight_factor": 0.3, "straight_power": 0.5, "straight_place": 0.3,
          "straight_views": 0.2, "curved_factor": 0.8, "curved_power": 0.5, "curved_place": 0.1,
-         "curved_views": 0.1, "place_px": 0.003, "curvature_px2": 1.5,
-         "curvature_sigma_px2": 0.7, "tail_share": 0.1, "straight_tail": 3, "curved_tail": 2.5}
+         "curved_views": 0.1, "place_px": 0.003, "curvature_px2": 0.3,
+         "curvature_sigma_px2": 0.3, "dark_side_px": 0.05, "tail_share": 0.1, "straight_tail": 3,
+         "curved_tail": 2.5}
 
 
 def arrays_of(pieces):
@@ -116,8 +117,11 @@ def probabilities(p, x):
     place = px2 * ((of_kind("place") * x["bias"]) ** 2 + (of_kind("views") * x["views"]) ** 2 +
                    p["place_px"] ** 2)
     bend = p["curvature_sigma_px2"] * x["bend"]
+    of_place = np.linalg.norm(x["bend"].reshape(-1, PLACES, 2), axis=2).repeat(2, axis=1)
+    inwards = np.divide(x["bend"], of_place, out=np.zeros_like(x["bend"]), where=of_place > 0)
+    dark = p["dark_side_px"] * x["footprint"][:, None] * inwards
     v = (own[:, None, None] * x["covariance"] + place[:, None, None] * x["shift"] +
-         bend[:, :, None] * bend[:, None, :] +
+         bend[:, :, None] * bend[:, None, :] + dark[:, :, None] * dark[:, None, :] +
          (FLOOR_PX ** 2 * px2)[:, None, None] * np.eye(2 * PLACES))
     draws = NORMAL @ np.linalg.cholesky(v).transpose(0, 2, 1)
     largest = np.sqrt((draws[:, :, ::2] ** 2 + draws[:, :, 1::2] ** 2).max(axis=2))
@@ -234,7 +238,7 @@ def reliability(title, rows):
     print(f"  largest difference of a tenth with 50 edges and more: {worst:.3f}")
 
 
-def report(condition, scenes, fitted, binary, options, draws):
+def report(condition, scenes, binary, options, draws):
     of = [s for s in scenes if s.condition == condition]
     for name, ask in [("known", lambda s: known_edges(s, binary, options)),
                       ("within", lambda s: judged_edges(s, binary, options, draws))]:
@@ -244,32 +248,35 @@ def report(condition, scenes, fitted, binary, options, draws):
             reliability(f"{name}, {condition}, tolerance {1000 * tolerance:g} thousandths",
                         [r for r in everything if r[0] == tolerance])
         reliability(f"{name}, {condition}, all", everything)
-        held = [r for s in of if s.part not in fitted for r in rows[s]]
-        if held:
-            reliability(f"{name}, {condition}, parts that were not fitted", held)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--binary", required=True)
     parser.add_argument("--work", required=True, help="folder of scenes, results and inspections")
-    parser.add_argument("--seeds", type=int, default=1, help="of each part")
+    parser.add_argument("--seeds", type=int, nargs="*", default=[1], help="of the parts asked of")
+    parser.add_argument("--fit-seeds", type=int, nargs="*", default=[11], help="of those fitted to")
     parser.add_argument("--draws", type=int, default=1, help="of moved nominal parts")
     parser.add_argument("--parts", nargs="*", default=PARTS)
+    parser.add_argument("--conditions", nargs="*", default=list(CONDITIONS))
     parser.add_argument("--fit", action="store_true", help="fit, and use what was fitted")
     parser.add_argument("--scenes-only", action="store_true")
     arguments = parser.parse_args()
     binary = arguments.binary
-    scenes = [Scene(arguments.work, part, condition, seed + 1) for condition in CONDITIONS
-              for seed in range(arguments.seeds) for part in arguments.parts]
-    scenes = [s for s in scenes if s.make(binary)]
+    conditions = [c for c in CONDITIONS if c in arguments.conditions]
+
+    def made(seeds):
+        scenes = [Scene(arguments.work, part, condition, seed) for condition in conditions
+                  for seed in seeds for part in arguments.parts]
+        return [s for s in scenes if s.make(binary)]
+
+    scenes, fitted = made(arguments.seeds), made(arguments.fit_seeds) if arguments.fit else []
     if arguments.scenes_only:
         return
-    fitted = {part for part, use in zip(PARTS, FITTED) if use}
     options = []
     if arguments.fit:
-        sets = [arrays_of([piece for s in scenes if s.condition == condition and s.part in fitted
-                           for piece in pieces_of(s, binary)]) for condition in CONDITIONS]
+        sets = [arrays_of([piece for s in fitted if s.condition == condition
+                           for piece in pieces_of(s, binary)]) for condition in conditions]
         best, value = fit(sets)
         print(f"log probability of an event {value:.4f}: " +
               ", ".join(f"{n} {v:.3g}" for n, v in best.items()))
@@ -277,8 +284,8 @@ def main():
         with open(path, "w") as file:
             json.dump({n: float(f"{v:.3g}") for n, v in best.items()}, file, indent=1)
         options = ["--calibration", path]
-    for condition in CONDITIONS:
-        report(condition, scenes, fitted, binary, options, arguments.draws)
+    for condition in conditions:
+        report(condition, scenes, binary, options, arguments.draws)
 
 
 if __name__ == "__main__":

@@ -148,6 +148,12 @@ Candidates find_candidates(const Gradient& g, float low) {
   return c;
 }
 
+float median_width(const EdgelMap& map) {
+  std::vector<float> widths;
+  for (const Edgel& e : map.edgels) widths.push_back(e.width);
+  return median(std::move(widths));
+}
+
 void mark_outline(const Image<float>& alpha, EdgelMap* map) {
   map->mask = Image<uint8_t>(alpha.width, alpha.height);
   for (size_t i = 0; i < alpha.data.size(); ++i) map->mask.data[i] = alpha.data[i] >= 0.5f;
@@ -176,6 +182,7 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
   keep_meaningful(g.magnitude, outline_band(c, options.sigma_px), options.meaning, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
+  map.blur = median_width(map);
   if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);
   build_lookup(&map, options.reach_px);
   return map;

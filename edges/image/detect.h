@@ -37,6 +37,9 @@ struct EdgelMap {
   /// in this image; empty if nobody judged it, see meaningful.h.
   std::vector<float> meaning;
   float noise = 0;            ///< measured noise of the image, grey values in [0, 1]
+  /// [px] median width of the edgels of a picture: what the camera and the detector blur it by; 0
+  /// if they are of something else, or nobody knows.
+  float blur = 0;
   Image<uint8_t> mask;        ///< 1 on the object, 0 elsewhere, in pixels of the image, never
                               ///< undistorted; empty if the image has no alpha
   /// In pixels of the image, never undistorted; null unless edgels are those of a picture.

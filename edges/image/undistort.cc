@@ -53,6 +53,7 @@ EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain, doubl
   EdgelMap out;
   out.width = found.width, out.height = found.height;
   out.noise = found.noise;
+  out.blur = found.blur;
   append_runs(found, keep, min_chain, &out);
   out.mask = std::move(found.mask);
   out.grey = std::move(found.grey);

@@ -28,6 +28,7 @@ EdgelMap kept(const EdgelMap& map, const std::vector<char>& keep) {
   EdgelMap out;
   out.width = map.width, out.height = map.height;
   out.noise = map.noise;
+  out.blur = map.blur;
   out.mask = map.mask;
   out.grey = map.grey;
   append_runs(map, keep, kMinChain, &out);

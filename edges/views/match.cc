@@ -13,6 +13,22 @@ namespace {
 // the whole curve slide. So a hundredth of what they say across it holds every sample where it is.
 constexpr double kSlide = 1e-2;
 
+// [px] by which blur moves the edge of a sample along an edgel's normal.
+double pull(const View& view, const EdgelMap& map, const Edgel& e, const CurvePoints& samples,
+            int i) {
+  if (samples.curvature.cols() == 0 || !(map.blur > 0)) return 0;
+  const Eigen::Vector3d bend = samples.curvature.col(i);
+  if (bend.isZero(0)) return 0;
+  const Eigen::Vector3d q = view.cam_from_world * samples.position.col(i);
+  const Eigen::Matrix<double, 2, 3> J =
+      view.camera.project_jacobian(q) * view.cam_from_world.rotation;
+  // Lines stay lines: what projection itself bends lies along the curve.
+  const double speed2 = (J * samples.tangent.col(i)).squaredNorm();
+  const double across = e.nx * J.row(0).dot(bend) + e.ny * J.row(1).dot(bend);
+  const double towards = pull_of_blur(std::abs(across) / std::max(speed2, 1e-300), map.blur);
+  return across > 0 ? towards : -towards;
+}
+
 // Matches of all samples in one view, in the order of the samples.
 std::vector<SampleMatch> match_view(const EdgeWorld& world, int view, const CurvePoints& samples,
                                     const MatchOptions& options) {
@@ -27,7 +43,7 @@ std::vector<SampleMatch> match_view(const EdgeWorld& world, int view, const Curv
     const int k = map.nearest_at(p.x(), p.y());
     if (k < 0) continue;
     const Edgel& e = map.edgels[k];
-    const double d = (p.x() - e.x) * e.nx + (p.y() - e.y) * e.ny;
+    const double d = (p.x() - e.x) * e.nx + (p.y() - e.y) * e.ny + pull(v, map, e, samples, i);
     const double along = -(p.x() - e.x) * e.ny + (p.y() - e.y) * e.nx;
     if (std::abs(d) > options.reach_px || std::abs(along) > 2) continue;
     const Eigen::Vector3d n = world.plane_normal[view].col(k).cast<double>();
@@ -95,6 +111,12 @@ double robust_sigma(const std::vector<SampleMatch>& matches) {
 }
 
 }  // namespace
+
+double pull_of_blur(double curvature, double blur) {
+  constexpr double kNothing = 0.75;  // blur over the radius at which nothing is left
+  const double bend = curvature * blur, share = bend / kNothing;
+  return share < 1 ? blur * bend / 2 * (1 - share * share * share * share) : 0;
+}
 
 Eigen::Vector3d distance_gradient(const EdgeWorld& world, const SampleMatch& match,
                                   const Eigen::Vector3d& position) {

@@ -66,6 +66,7 @@ EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int m
     for (char& k : keep) k = !k;
     out.maps[v].width = map.width, out.maps[v].height = map.height;
     out.maps[v].noise = map.noise;
+    out.maps[v].blur = map.blur;
     const std::vector<int> kept = append_runs(map, keep, min_chain, &out.maps[v]);
     build_lookup(&out.maps[v], kLookupPx);
     out.plane_normal[v].resize(3, kept.size());

@@ -9,6 +9,7 @@
 #include "datasets/types/median.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_jacobian.h"
+#include "sketches/curve/sample.h"
 #include "sketches/solve/covariance.h"
 
 namespace sketchsplat {
@@ -43,7 +44,9 @@ Eigen::Matrix<double, 3, 6> pose_modes(const Alignment& alignment, const Vector3
   return j * root_of(alignment.covariance);
 }
 
-constexpr int kRigid = 3, kBend = 1, kScale = 1, kPose = 6;
+constexpr double kImplied = 0.25;  // [px] by which strokes that no edgel saw are off
+
+constexpr int kRigid = 3, kBend = 2, kScale = 1, kPose = 6;
 
 }  // namespace
 
@@ -59,6 +62,7 @@ std::vector<std::pair<std::string, double*>> named_numbers(SigmaOptions* o) {
           {"place_px", &o->place_px},
           {"curvature_px2", &o->curvature_px2},
           {"curvature_sigma_px2", &o->curvature_sigma_px2},
+          {"dark_side_px", &o->dark_side_px},
           {"tail_share", &o->tail_share},
           {"straight_tail", &o->straight_tail},
           {"curved_tail", &o->curved_tail}};
@@ -76,6 +80,14 @@ double SigmaModel::factor(const Stroke& stroke, const Evidence& e) const {
 double SigmaModel::pull_px2() const {
   const double sigma = options.curvature_sigma_px2;
   return without_pull ? sigma : std::hypot(options.curvature_px2, sigma);
+}
+
+Eigen::Matrix<double, 3, 2> SigmaModel::radial_errors(const Sketch& measured, int stroke,
+                                                      double t) const {
+  const Vector3d bend = bend_at(measured, stroke, t, footprint);
+  Eigen::Matrix<double, 3, 2> out;
+  out << pull_px2() * bend, options.dark_side_px * footprint * bend.stableNormalized();
+  return out;
 }
 
 double SigmaModel::wide(StrokeKind kind) const {
@@ -100,8 +112,14 @@ MatrixXd calibrated_covariance(const Sketch& measured, int stroke, const SigmaMo
   const StrokeKind kind = measured.strokes[stroke].kind;
   const double factor = sigma.factor(measured.strokes[stroke], e);
   const int n = 3 * num_controls(kind);
+  if (is_implied(measured, stroke, sigma))
+    return std::pow(kImplied * sigma.footprint, 2) * MatrixXd::Identity(n, n);
   if (!e.covariance.empty()) return factor * factor * from_upper_triangle(e.covariance);
   return std::pow(factor * e.sigma, 2) * MatrixXd::Identity(n, n);
+}
+
+bool is_implied(const Sketch& measured, int stroke, const SigmaModel& sigma) {
+  return sigma.footprint > 0 && sigma.bias_px > 0 && !(measured.evidence[stroke].sigma > 0);
 }
 
 bool is_open(const Sketch& measured, int stroke) {
@@ -118,18 +136,6 @@ bool is_open(const Sketch& measured, int stroke) {
     default:
       return false;  // what nearly straight ones leave open does not move them
   }
-}
-
-Vector3d curvature_at(const Sketch& sketch, int stroke, double t) {
-  constexpr double kStep = 1e-4;
-  const double a = std::max(0.0, t - kStep), b = std::min(1.0, t + kStep);
-  Vector3d p, q, d, before, after;
-  evaluate_stroke(sketch, stroke, a, &p, &before);
-  evaluate_stroke(sketch, stroke, b, &q, &after);
-  evaluate_stroke(sketch, stroke, t, &p, &d);
-  const double length = d.norm() * (b - a);
-  if (!(length > 0)) return Vector3d::Zero();
-  return (after.stableNormalized() - before.stableNormalized()) / length;
 }
 
 Eigen::Matrix<double, 2, 3> frame_across(const Vector3d& tangent) {
@@ -153,8 +159,7 @@ PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& p
   const MatrixXd root = root_of(calibrated_covariance(measured, stroke, sigma));
   const StrokeKind kind = measured.strokes[stroke].kind;
   const ControlPoints controls = control_points(measured, stroke);
-  const double px = sigma.footprint,
-               aside = sigma.place(measured.strokes[stroke], measured.evidence[stroke]);
+  const double aside = sigma.place(measured.strokes[stroke], measured.evidence[stroke]);
   MatrixXd own(2 * n, root.cols());
   MatrixXd other = MatrixXd::Zero(2 * n, kRigid + kBend + kScale + (held ? 0 : kPose));
   PieceErrors out;
@@ -167,7 +172,7 @@ PieceErrors piece_errors(const Sketch& measured, const std::vector<EdgePlace>& p
         across * curve_jacobian(kind, controls, p.t).leftCols(root.rows()) * root;
     auto rows = other.middleRows<2>(2 * j);
     rows.leftCols<kRigid>() = aside * across;
-    rows.col(kRigid) = sigma.pull_px2() * (across * bend_at(measured, stroke, p.t, px));
+    rows.middleCols<kBend>(kRigid) = across * sigma.radial_errors(measured, stroke, p.t);
     if (sigma.alignment)
       rows.col(kRigid + kBend) =
           sigma.options.scale_percent / 100 * (across * (p.measured - sigma.alignment->centre));

@@ -20,19 +20,23 @@ struct SigmaOptions {
   /// sigma)^power, b the length by which the stroke's views disagree. The covariance knows the
   /// shape of the error; its size is of all strokes together, and knows nothing of the regularities
   /// that average errors away.
-  double straight_factor = 0.27, straight_power = 0.43;
-  double curved_factor = 0.87, curved_power = 0.4;
+  double straight_factor = 0.164, straight_power = 0.4;
+  double curved_factor = 0.39, curved_power = 0.48;
   /// By which a stroke is off as a whole, in each direction: shares of b and of the b of all
   /// strokes.
-  double straight_place = 0.3, straight_views = 0.22;
-  double curved_place = 0.03, curved_views = 0.09;
-  double place_px = 0.001;  ///< [px] and always
+  double straight_place = 0.48, straight_views = 0.22;
+  double curved_place = 0.154, curved_views = 0.09;
+  double place_px = 0.0003;  ///< [px] and always
   /// [px^2] over the radius of curvature [px]: by so much a curve lies nearer to its centre of
   /// curvature, because blurred edges do, and the standard deviation of that.
-  double curvature_px2 = 1.5, curvature_sigma_px2 = 0.7;
-  double tail_share = 0.1;     ///< of strokes are worse
-  double straight_tail = 3.5;  ///< by so much
-  double curved_tail = 2.2;
+  double curvature_px2 = 0.21, curvature_sigma_px2 = 0.26;
+  /// [px] standard deviation of what all of a curve lies nearer to its centre of curvature or
+  /// farther from it, whatever its radius: pictures are encoded, so that edges lie nearer to their
+  /// dark side, which of a hole is inside in all views.
+  double dark_side_px = 0.037;
+  double tail_share = 0.166;     ///< of strokes are worse
+  double straight_tail = 3;  ///< by so much
+  double curved_tail = 4.2;
   double scale_percent = 0;  ///< [%] standard deviation of the scale
 };
 
@@ -48,6 +52,8 @@ struct SigmaModel {
   bool without_pull = false;  ///< the mean pull of blur has been taken off what was measured
 
   double pull_px2() const;  ///< standard deviation of that pull, or its size if it is still there
+  /// One standard deviation each of that, and of the dark side, at a place of a stroke.
+  Eigen::Matrix<double, 3, 2> radial_errors(const Sketch& measured, int stroke, double t) const;
   double factor(const Stroke& stroke, const Evidence& evidence) const;
   double wide(StrokeKind kind) const;  ///< sigma of the worse ones over the others'
   double place(const Stroke& stroke,
@@ -61,12 +67,12 @@ double typical_bias_px(const Sketch& measured);
 /// its sigma alone.
 Eigen::MatrixXd calibrated_covariance(const Sketch& measured, int stroke, const SigmaModel& sigma);
 
+/// Was it the faces of a solid that put the stroke there, and no edgels, which others have?
+bool is_implied(const Sketch& measured, int stroke, const SigmaModel& sigma);
+
 /// Does the stroke have directions that no edgel determines? They have variance 0, which means
 /// nothing.
 bool is_open(const Sketch& measured, int stroke);
-
-/// Derivative of the unit tangent by arc length: towards the centre of curvature, 1 / radius long.
-Eigen::Vector3d curvature_at(const Sketch& sketch, int stroke, double t);
 
 /// Two unit vectors across a unit tangent, as rows.
 Eigen::Matrix<double, 2, 3> frame_across(const Eigen::Vector3d& tangent);
@@ -78,6 +84,9 @@ Eigen::Vector3d bend_at(const Sketch& measured, int stroke, double t, double foo
 /// Errors at some places of one stroke that were measured beside a nominal edge.
 struct PieceErrors {
   DeviationModel model;
+  /// The stroke is of another kind than the nominal edge, because views could not tell them apart:
+  /// what of its shape differs says nothing.
+  bool unlike = false;
   double wide = 1;        ///< with the probability of tails, modes are so many times as large
   double sigma = 0;       ///< largest standard deviation, from the edgels
   double systematic = 0;  ///< the same, from what edgels do not know: place, curvature, scale, pose

@@ -16,14 +16,13 @@ StrokeErrors::StrokeErrors(const Sketch& measured, const SigmaModel& sigma, int 
 
 Eigen::Matrix<double, 3, kErrorsOfStroke> StrokeErrors::at(double t) const {
   const StrokeKind kind = measured_.strokes[stroke_].kind;
-  const double px = sigma_.footprint;
   Eigen::Matrix<double, 3, kErrorsOfStroke> out = Eigen::Matrix<double, 3, kErrorsOfStroke>::Zero();
   out.leftCols(root_.cols()) =
       curve_jacobian(kind, control_points(measured_, stroke_), t).leftCols(root_.rows()) * root_;
   out.middleCols<3>(kErrorsOfEdgels) =
       sigma_.place(measured_.strokes[stroke_], measured_.evidence[stroke_]) *
       Eigen::Matrix3d::Identity();
-  out.col(kErrorsOfStroke - 1) = sigma_.pull_px2() * bend_at(measured_, stroke_, t, px);
+  out.rightCols<2>() = sigma_.radial_errors(measured_, stroke_, t);
   return out;
 }
 

@@ -8,9 +8,9 @@
 
 namespace sketchsplat {
 
-/// Independent errors of a stroke: 12 control coordinates; a shift (3) and a bend, which edgels do
-/// not know.
-constexpr int kErrorsOfStroke = 16, kErrorsOfEdgels = 12;
+/// Independent errors of a stroke: 12 control coordinates; a shift (3), and two ways of being too
+/// small, which edgels do not know.
+constexpr int kErrorsOfStroke = 17, kErrorsOfEdgels = 12;
 
 /// One standard deviation of each independent error of a stroke, calibrated.
 class StrokeErrors {

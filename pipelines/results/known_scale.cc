@@ -47,7 +47,7 @@ class Errors {
     for (int k = 0; k < by.size(); ++k)
       by[k] = (radius_with(stroke, k, step) - radius_with(stroke, k, -step)) / (2 * step);
     const double own = by.dot(calibrated_covariance(sketch_, stroke, sigma_) * by);
-    const double bend = sigma_.pull_px2() * footprint_ * footprint_ / r;
+    const double bend = sigma_.radial_errors(sketch_, stroke, 0.5).norm();
     return std::sqrt(std::max(0.0, own) + bend * bend);
   }
   // As a whole across itself.

@@ -109,8 +109,10 @@ Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOpt
   o.reach_px = options.reach_px;
   o.layout = plan_samples(sketch, spacing_px * world.footprint);
   o.samples = evaluate_samples(sketch, o.layout);
-  o.matches =
-      match_samples(world, {o.samples.position, o.samples.tangent, o.layout.first}, options);
+  o.matches = match_samples(
+      world,
+      {o.samples.position, o.samples.tangent, o.layout.first, sample_curvatures(sketch, o.layout)},
+      options);
   return o;
 }
 

@@ -79,6 +79,26 @@ Samples evaluate_samples(const Sketch& sketch, const SampleLayout& layout) {
   return out;
 }
 
+Eigen::Vector3d curvature_at(const Sketch& sketch, int stroke, double t) {
+  constexpr double kStep = 1e-4;
+  if (sketch.strokes[stroke].kind == StrokeKind::kLine) return Eigen::Vector3d::Zero();
+  const double a = std::max(0.0, t - kStep), b = std::min(1.0, t + kStep);
+  Eigen::Vector3d p, q, d, before, after;
+  evaluate_stroke(sketch, stroke, a, &p, &before);
+  evaluate_stroke(sketch, stroke, b, &q, &after);
+  evaluate_stroke(sketch, stroke, t, &p, &d);
+  const double length = d.norm() * (b - a);
+  if (!(length > 0)) return Eigen::Vector3d::Zero();
+  return (after.stableNormalized() - before.stableNormalized()) / length;
+}
+
+Eigen::Matrix3Xd sample_curvatures(const Sketch& sketch, const SampleLayout& layout) {
+  Eigen::Matrix3Xd out(3, layout.size());
+  for (int i = 0; i < layout.size(); ++i)
+    out.col(i) = curvature_at(sketch, layout.stroke[i], layout.t[i]);
+  return out;
+}
+
 SketchGradient evaluate_samples_backward(const Sketch& sketch, const SampleLayout& layout,
                                          const Samples& gradient) {
   SketchGradient out;

@@ -28,6 +28,11 @@ struct Samples {
 };
 Samples evaluate_samples(const Sketch& sketch, const SampleLayout& layout);
 
+/// Derivative of the unit tangent by arc length: towards the centre of curvature, 1 / radius long.
+Eigen::Vector3d curvature_at(const Sketch& sketch, int stroke, double t);
+/// The same of all samples, 3 x N.
+Eigen::Matrix3Xd sample_curvatures(const Sketch& sketch, const SampleLayout& layout);
+
 /// Derivative of a point of a curve by its control points, x y z each, in the order of StrokeKind;
 /// the columns that are left over are zero.
 using PointJacobian = Eigen::Matrix<double, 3, 12>;

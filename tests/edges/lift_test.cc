@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "edges/image/detect.h"
 #include "edges/views/link.h"
 #include "edges/views/match.h"
 #include "tests/support/strokes.h"
@@ -193,6 +194,57 @@ TEST(Match, AnEdgelBelongsToTheNearerOfTwoLinesFourPixelsApart) {
   for (const SampleMatch& s : m.matches) own += std::abs(s.distance_px) < 0.05;
   EXPECT_GT(m.matches.size(), 600u);
   EXPECT_GT(own, size_t(0.95 * m.matches.size()));
+}
+
+// A bright disc of 5 px radius about (31.7, 32.2), each pixel by how much of it the disc covers.
+Picture disc_picture() {
+  Picture p;
+  p.red = Image<float>(64, 64, 0.3f);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (int k = 0; k < 256; ++k) {
+        const double dx = x - 31.7 + (k % 16 - 7.5) / 16, dy = y - 32.2 + (k / 16 - 7.5) / 16;
+        if (std::hypot(dx, dy) < 5) p.red.at(x, y) += 0.4f / 256;
+      }
+  p.green = p.blue = p.red;
+  return p;
+}
+
+TEST(Match, ASmallDiscIsAsLargeAsItIsThoughBlurPullsItsEdgeInwards) {
+  View view;
+  view.camera = {64, 64, 100, 100, 31.7, 32.2};
+  const EdgeWorld w = make_edge_world({view}, {detect_edges(disc_picture(), {})});
+  CurvePoints disc;
+  disc.position.resize(3, 60), disc.tangent.resize(3, 60);
+  for (int i = 0; i < 60; ++i) {
+    const double a = 2 * M_PI * i / 60;
+    disc.position.col(i) << 0.05 * std::cos(a), 0.05 * std::sin(a), 1;
+    disc.tangent.col(i) << -std::sin(a), std::cos(a), 0;
+  }
+  disc.first = {0, 60};
+  const auto outwards = [&] {  // edgels' normals point to the bright disc
+    const Matches m = match_samples(w, disc, {});
+    EXPECT_GT(m.matches.size(), 50u);
+    double sum = 0;
+    for (const SampleMatch& s : m.matches) sum -= s.distance_px;
+    return sum / double(m.matches.size());
+  };
+  EXPECT_GT(outwards(), 0.08) << "or the test shows nothing";
+  disc.curvature = -disc.position / (0.05 * 0.05);
+  disc.curvature.row(2).setZero();
+  EXPECT_NEAR(outwards(), 0, 0.02);
+}
+
+TEST(Match, ThePullOfBlurIsThatOfABlurredDisc) {
+  // Where r I_1(r R / b^2) exp(-(r^2 + R^2) / 2 b^2) / r, the gradient, is steepest, for b = 1.
+  const std::vector<std::pair<double, double>> bends = {
+      {0.05, 0.0251}, {0.1, 0.05}, {0.3, 0.1447}, {0.5, 0.1919}, {0.6, 0.1557}, {0.7, 0.0849}};
+  for (const auto& [curvature, pull] : bends) {
+    EXPECT_NEAR(pull_of_blur(curvature, 1), pull, 0.025) << curvature;
+    EXPECT_NEAR(pull_of_blur(curvature / 3, 3), 3 * pull, 0.075) << "as long as the blur";
+  }
+  EXPECT_EQ(pull_of_blur(0, 1), 0);
+  EXPECT_EQ(pull_of_blur(5, 1), 0) << "a speck";
 }
 
 TEST(Match, SamplesBehindTheCameraOutsideOrNowhereMatchNothing) {
