@@ -18,6 +18,25 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
+constexpr int kPoints = 32;  // along a stroke, for a fit to more than one
+
+// Of a closed curve, by its parameter: from `begin` in [0, 1) on.
+struct Span {
+  double begin, length;
+};
+
+// What two spans leave of a closed curve.
+std::vector<Span> rest_of(Span a, Span b) {
+  const auto from = [](double begin, double end) { return end - begin - std::floor(end - begin); };
+  std::vector<Span> out;
+  for (const auto& [p, q] : {std::pair(a, b), std::pair(b, a)}) {
+    const double end = p.begin + p.length;
+    if (from(q.begin, end) >= q.length)
+      out.push_back({end, std::min(from(end, p.begin), from(end, q.begin))});
+  }
+  return out;
+}
+
 class Rounder {
  public:
   Rounder(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
@@ -30,8 +49,10 @@ class Rounder {
         alive_(sketch.size(), true) {}
 
   void round_arcs();
+  void round_facing_arcs();
   void round_elliptic_arcs();
   void ellipses_to_circles();
+  void absorb_doubles();
   Sketch finish() {
     StrokePoints kept;
     for (int i = 0; i < s_.size(); ++i)
@@ -70,6 +91,8 @@ class Rounder {
   }
   double rest_cost(const PlainCurve& curve, const Matrix3Xd& points, double share) const;
   void round_ellipse(int a, bool a_back, int b, bool b_back);
+  void round_facing(int a, int b);
+  Span span_on(const PlainCurve& circle, const CurveSamples& samples, int arc) const;
 
   Sketch s_;
   const EdgeWorld& world_;
@@ -124,7 +147,6 @@ void Rounder::round_elliptic_arcs() {
 }
 
 void Rounder::round_ellipse(int a, bool a_back, int b, bool b_back) {
-  constexpr int kPoints = 32;
   Matrix3Xd points(3, a == b ? kPoints : 2 * kPoints - 1);
   Vector3d d;
   for (int k = 0; k < points.cols(); ++k) {
@@ -170,6 +192,57 @@ double Rounder::rest_cost(const PlainCurve& curve, const Matrix3Xd& points, doub
   return gap_cost(curve.kind, c, last.t, end, share * samples.length, world_, options_.gap);
 }
 
+// Two arcs of one circle that share no node are all of it, where an edge may run through both gaps.
+void Rounder::round_facing_arcs() {
+  const std::vector<int> degree = node_degrees(s_);
+  const auto is_loose = [&](int i) {
+    return is_open(i) && s_.strokes[i].kind == StrokeKind::kArc &&
+           degree[s_.strokes[i].begin] == 1 && degree[s_.strokes[i].end] == 1;
+  };
+  const int n = s_.size();
+  for (int a = 0; a < n; ++a)
+    for (int b = a + 1; b < n; ++b)
+      if (is_loose(a) && is_loose(b)) round_facing(a, b);
+}
+
+void Rounder::round_facing(int a, int b) {
+  Matrix3Xd points(3, 2 * kPoints);
+  Vector3d p, d;
+  for (int k = 0; k < points.cols(); ++k) {
+    evaluate_stroke(s_, k < kPoints ? a : b, double(k % kPoints) / (kPoints - 1), &p, &d);
+    points.col(k) = p;
+  }
+  const CircleFit fit = fit_circle(points);
+  PlainCurve circle;
+  circle.kind = StrokeKind::kCircle;
+  circle.p[0] = fit.centre, circle.p[1] = fit.radius * fit.normal;
+  if (!is_sound(circle) || !(growth(a, b, 0, circle) < 0)) return;
+  const CurveSamples samples = sample_curve(circle);
+  const Span of_a = span_on(circle, samples, a), of_b = span_on(circle, samples, b);
+  if (of_a.length + of_b.length < options_.least_turn) return;
+  ControlPoints c;
+  std::copy_n(circle.p.begin(), c.count = circle.size(), c.p.begin());
+  double gaps = 0;
+  for (const Span& gap : rest_of(of_a, of_b))
+    gaps += gap_cost(circle.kind, c, gap.begin, gap.begin + gap.length, gap.length * samples.length,
+                     world_, options_.gap);
+  if (!(growth(a, b, gaps, circle) < 0)) return;
+  replace(a, b, circle);
+  ++rounded_;
+}
+
+Span Rounder::span_on(const PlainCurve& circle, const CurveSamples& samples, int arc) const {
+  double t[3];
+  Vector3d p, d;
+  for (int k = 0; k < 3; ++k) {
+    evaluate_stroke(s_, arc, k / 2.0, &p, &d);
+    t[k] = closest_point(circle, samples, p).t;
+  }
+  const double middle = t[1] - t[0] - std::floor(t[1] - t[0]);
+  const double end = t[2] - t[0] - std::floor(t[2] - t[0]);
+  return middle < end ? Span{t[0], end} : Span{t[2], 1 - end};
+}
+
 // An ellipse that the images cannot tell from a circle is one.
 void Rounder::ellipses_to_circles() {
   for (int i = 0; i < s_.size(); ++i) {
@@ -185,14 +258,32 @@ void Rounder::ellipses_to_circles() {
   }
 }
 
+// A stroke with loose ends may be a piece of a closed one, drawn twice.
+void Rounder::absorb_doubles() {
+  const std::vector<int> degree = node_degrees(s_);
+  const auto is_loose = [&](int i) {
+    return is_open(i) && degree[s_.strokes[i].begin] == 1 && degree[s_.strokes[i].end] == 1;
+  };
+  for (int closed = 0; closed < s_.size(); ++closed)  // what takes in another one comes last
+    for (int i = 0; i < s_.size() && alive_[closed]; ++i) {
+      if (!is_closed(s_.strokes[closed].kind) || !is_loose(i)) continue;
+      const PlainCurve curve = plain_curve(s_, closed);
+      if (!(growth(closed, i, 0, curve) < 0)) continue;
+      replace(closed, i, curve);
+      ++rounded_;
+    }
+}
+
 }  // namespace
 
 Sketch round_arcs(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
                   Described* described, int* rounded) {
   Rounder rounder(sketch, world, options, described);
   rounder.round_arcs();
+  rounder.round_facing_arcs();
   rounder.round_elliptic_arcs();
   rounder.ellipses_to_circles();
+  rounder.absorb_doubles();
   *rounded = rounder.rounded();
   return rounder.finish();
 }

@@ -135,6 +135,42 @@ TEST_F(CloseGraph, TwoArcsThatGoOnAroundNearlyACircleAreTheCircle) {
   }
 }
 
+// About (0.5, 0.5, 0.5).
+Vector3d on_circle(double deg, double radius) {
+  const double a = deg * M_PI / 180;
+  return Vector3d(0.5 + radius * std::cos(a), 0.5 + radius * std::sin(a), 0.5);
+}
+
+TEST_F(CloseGraph, TwoArcsThatFaceEachOtherOverTwoGapsAreTheirCircle) {
+  const double r = 0.2, gap = 5 * px / r * 180 / M_PI;
+  for (const double other : {r + 0.1 * px, r + 30 * px}) {
+    Sketch s;
+    add_arc(&s, on_circle(0, r), on_circle(60, r), on_circle(120, r));
+    add_arc(&s, on_circle(360 - gap, other), on_circle(240, other), on_circle(120 + gap, other));
+    const bool one = other < r + px;
+    const Closed c = close(s);
+    EXPECT_EQ(c.rounded, one);
+    ASSERT_EQ(c.sketch.size(), one ? 1 : 2);
+    EXPECT_EQ(c.sketch.strokes[0].kind, one ? StrokeKind::kCircle : StrokeKind::kArc);
+  }
+  Sketch part;  // where masks say that views must see the rest, and they do not
+  add_arc(&part, on_circle(0, r), on_circle(50, r), on_circle(100, r));
+  add_arc(&part, on_circle(180, r), on_circle(215, r), on_circle(250, r));
+  EXPECT_EQ(close_graph(part, world_of(part, 40), {}, {}).rounded, 0);
+}
+
+TEST_F(CloseGraph, APieceOfACircleDrawnTwiceIsTheCircleUnlessSomethingEndsThere) {
+  for (const double off : {0.1 * px, 4 * px}) {
+    const double r = 0.2 + off;
+    Sketch s;
+    s.add_stroke(StrokeKind::kCircle, -1, -1, {{0.5, 0.5, 0.5}, {0, 0, 0.2}});
+    add_arc(&s, on_circle(20, r), on_circle(40, r), on_circle(60, r));
+    EXPECT_EQ(close(s).sketch.size(), off < px ? 1 : 2);
+    s.add_stroke(StrokeKind::kLine, s.strokes[1].end, s.add_node({0.9, 0.9, 0.5}), {});
+    EXPECT_EQ(close(s).sketch.size(), 3);
+  }
+}
+
 // With masks, a gap is closed if no view contradicts; without any, if it is narrow.
 TEST_F(CloseGraph, ArcsOfNearlyAnEllipseAreTheEllipseUnlessSomethingEndsThere) {
   const Vector3d centre(0.5, 0.5, 0.5), p(0.3, 0, 0.1), q(0, 0.15, 0);
