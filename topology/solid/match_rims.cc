@@ -27,7 +27,8 @@ bool is_free(StrokeKind kind) {
 // Free strokes end to end, in a plane.
 struct Chain {
   Loop strokes;
-  std::vector<int> nodes;  // one more than strokes; none if it is an ellipse
+  std::vector<int> nodes;   // one more than strokes; none if it is an ellipse
+  std::vector<int> beyond;  // strokes that go on smoothly from its ends
   Matrix3Xd places;
   Vector3d centre, normal;
 };
@@ -87,6 +88,8 @@ class Matcher {
         done[s] = true;
       } else {
         follow(s, &done, &chain);
+        add_beyond(chain.strokes.front().stroke, chain.nodes.front(), &chain);
+        add_beyond(chain.strokes.back().stroke, chain.nodes.back(), &chain);
       }
       if (measure(&chain)) chains_.push_back(std::move(chain));
     }
@@ -107,6 +110,11 @@ class Matcher {
       chain->nodes.push_back(node);
       stroke = next(stroke, node);
     }
+  }
+  void add_beyond(int own, int node, Chain* chain) const {
+    const Vector3d out = tangent_out(sketch_, own, node);
+    for (const int s : ends_[node])
+      if (s != own && out.dot(tangent_out(sketch_, s, node)) < -kSmooth) chain->beyond.push_back(s);
   }
   int other_end(int stroke, int node) const {
     const Stroke& s = sketch_.strokes[stroke];
@@ -142,13 +150,13 @@ class Matcher {
     if (std::abs(a.normal.dot(b.normal)) < 0.999 || up.norm() <= 4 * tolerance_) return false;
     if (a.nodes.empty() != b.nodes.empty() || b.strokes.size() < a.strokes.size()) return false;
     const auto near = [&](const Chain& on, const Vector3d& p) {
-      for (const int end : on.nodes)  // how far a smooth outline goes as this curve, nobody sees
+      for (const int end : on.nodes)
         if ((end == on.nodes.front() || end == on.nodes.back()) &&
             (sketch_.nodes.col(end) - p).norm() <= kEnds * tolerance_)
           return true;
-      return std::any_of(on.strokes.begin(), on.strokes.end(), [&](const LoopStroke& s) {
-        return distance_to_stroke(sketch_, s.stroke, p).distance <= kSlack * tolerance_;
-      });
+      return is_beyond(on, p) ||
+             std::any_of(on.strokes.begin(), on.strokes.end(),
+                         [&](const LoopStroke& s) { return touches(s.stroke, p); });
     };
     for (int i = 0; i < b.places.cols(); ++i)
       if (!near(a, b.places.col(i) - up)) return false;
@@ -156,13 +164,24 @@ class Matcher {
       if (!near(b, a.places.col(i) + up)) return false;
     return a.nodes.empty() || ends_meet(a, b) || ends_meet(a, turned(b));
   }
+  bool touches(int stroke, const Vector3d& p) const {
+    return distance_to_stroke(sketch_, stroke, p).distance <= kSlack * tolerance_;
+  }
+  // How far a smooth outline goes as this curve, nobody sees.
+  bool is_beyond(const Chain& chain, const Vector3d& p) const {
+    return std::any_of(chain.beyond.begin(), chain.beyond.end(),
+                       [&](int s) { return touches(s, p); });
+  }
   bool ends_meet(const Chain& a, const Chain& b) const {
     const Vector3d up = rise(a, b);
-    const auto off = [&](int p, int q) {
-      return (sketch_.nodes.col(q) - sketch_.nodes.col(p) - up).norm();
+    const double least = (a.places.leftCols(1) - a.places.rightCols(1)).norm() / 2;
+    const auto meet = [&](int p, int q) {
+      const Vector3d over = sketch_.nodes.col(p) + up, under = sketch_.nodes.col(q) - up;
+      const double off = (over - sketch_.nodes.col(q)).norm();
+      return off <= kEnds * tolerance_ ||
+             (off < least && (is_beyond(b, over) || is_beyond(a, under)));
     };
-    return off(a.nodes.front(), b.nodes.front()) <= kEnds * tolerance_ &&
-           off(a.nodes.back(), b.nodes.back()) <= kEnds * tolerance_;
+    return meet(a.nodes.front(), b.nodes.front()) && meet(a.nodes.back(), b.nodes.back());
   }
   static Chain turned(Chain chain) {
     std::reverse(chain.strokes.begin(), chain.strokes.end());
