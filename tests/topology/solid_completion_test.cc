@@ -118,6 +118,33 @@ TEST(SolidCompletion, AnEdgeSeenTwiceIsOneEdge) {
   EXPECT_THAT(search.doubtful, IsEmpty());
 }
 
+// The floor of a round-cornered pocket, of which arcs are seen that end too early or too late.
+TEST(SolidCompletion, PiecesOfAFloorThatEndWrongAreItsCopySeenTwice) {
+  for (const double turn : {1.35, 1.57, 1.75}) {
+    SolidMaker m;
+    const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
+    for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+    const double r = 0.4, x = 1.2, y = 0.7;
+    std::vector<int> rim;
+    for (int corner = 0; corner < 4; ++corner) {
+      const double sx = corner == 0 || corner == 3 ? 1 : -1, sy = corner < 2 ? 1 : -1;
+      const Vector3d centre(sx * (x - r), sy * (y - r), 2), down(0, 0, -1);
+      const auto at = [&](double a) {
+        const double angle = corner * M_PI / 2 + a;
+        return Vector3d(centre + r * Vector3d(std::cos(angle), std::sin(angle), 0));
+      };
+      rim.push_back(m.node(at(0))), rim.push_back(m.node(at(M_PI / 2)));
+      m.arc(rim[rim.size() - 2], rim.back(), at(M_PI / 4));
+      if (corner % 2 == 0)
+        m.arc(m.node(at(0) + down), m.node(at(turn) + down), at(turn / 2) + down);
+    }
+    for (size_t i = 1; i < 8; i += 2) m.line(rim[i], rim[(i + 1) % 8]);
+    const SolidSearch search = find_solid(m.solid.edges);
+    EXPECT_NEAR(volume_of(search), 24 - (4 * x * y - (4 - M_PI) * r * r), 0.01)
+        << turn << search.why;
+  }
+}
+
 TEST(SolidCompletion, AThinWallAsksForAFineTolerance) {
   SolidMaker m;
   const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 0.08);

@@ -13,141 +13,13 @@
 #include "topology/solid/adjust.h"
 #include "topology/solid/assemble.h"
 #include "topology/solid/choose.h"
-#include "topology/solid/keep_faces.h"
 #include "topology/solid/complete.h"
-#include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_surfaces.h"
+#include "topology/solid/keep_faces.h"
+#include "topology/solid/price_cells.h"
 
 namespace sketchsplat {
 namespace {
-
-// Two surfaces of a kind that hold the same strokes give the same cells; but of those that bulge as
-// they like.
-void drop_doubles(std::vector<Cell>* cells, const std::vector<SurfaceStrokes>& surfaces) {
-  std::set<std::pair<bool, std::vector<int>>> seen;
-  std::vector<Cell> out;
-  for (Cell& cell : *cells) {
-    const SurfaceKind kind = surfaces[cell.surface].surface.kind;
-    if (surfaces[cell.surface].part) {
-      out.push_back(std::move(cell));
-      continue;
-    }
-    std::vector<int> strokes;
-    for (const Loop& loop : cell.loops)
-      for (const LoopStroke& s : loop) strokes.push_back(s.stroke);
-    std::sort(strokes.begin(), strokes.end());
-    const bool planar = kind == SurfaceKind::kPlane;
-    if (seen.emplace(planar, strokes).second) out.push_back(std::move(cell));
-  }
-  *cells = std::move(out);
-}
-
-// Does something speak for a cell? Of a round surface the part that contours or rims ask for; a
-// cone's apex that nobody saw may be anywhere.
-bool is_supported(const Cell& cell, const SurfaceStrokes& on) {
-  if (!on.part)
-    return on.surface.kind != SurfaceKind::kCone || cell.polygons.size() == cell.loops.size();
-  const std::vector<Eigen::Vector3d> points = points_within(cell, layout_of(on), 20);
-  const auto within = std::count_if(points.begin(), points.end(), on.part);
-  return 2 * within > long(points.size());
-}
-
-// What it costs to say that a stroke is no edge: its log-odds of being one, within reason.
-double unused_price(const Evidence& evidence) {
-  // Something else must have made the edgels, on top.
-  constexpr double kUnknown = 5, kLeast = 0.5, kMost = 10, kCause = 3;
-  if (std::isnan(evidence.confidence)) return kUnknown + kCause;
-  const double c = std::clamp(evidence.confidence, 1e-6, 1 - 1e-6);
-  return std::clamp(std::log(c / (1 - c)), kLeast, kMost) + kCause;
-}
-
-double used_price(EdgeOrigin origin, const SolidOptions& options) {
-  switch (origin) {
-    case EdgeOrigin::kSeen:
-      return 0;
-    case EdgeOrigin::kSmooth:
-      return options.smooth_price;
-    case EdgeOrigin::kCopy:
-      return options.copy_price;
-    case EdgeOrigin::kFaint:
-      break;
-  }
-  return options.faint_price;
-}
-
-// Strokes that may be others seen twice: of those that bound no face so far.
-std::vector<Double> doubles_of(const Sketch& sketch, const std::vector<bool>& left, double reach) {
-  constexpr int kPlaces = 16;
-  std::vector<Double> out;
-  Eigen::Vector3d p, d;
-  for (int s = 0; s < int(left.size()); ++s) {
-    if (!left[s]) continue;
-    Double stroke{s, {}};
-    for (int i = 0; i <= kPlaces; ++i) {
-      evaluate_stroke(sketch, s, double(i) / kPlaces, &p, &d);
-      std::vector<int> beside;
-      for (int other = 0; other < sketch.size(); ++other)
-        if (other != s && distance_to_stroke(sketch, other, p).distance <= reach)
-          beside.push_back(other);
-      stroke.along.insert(beside);
-    }
-    if (!stroke.along.count({})) out.push_back(stroke);
-  }
-  return out;
-}
-
-double face_price(const Surface& surface, const SolidOptions& options) {
-  const bool rare = surface.kind != SurfaceKind::kPlane && surface.kind != SurfaceKind::kCylinder;
-  return options.face_price + (rare ? options.rare_price : 0);
-}
-
-// Cells that an inferred circle, if it is no edge, leaves as one face.
-std::vector<std::pair<std::pair<int, int>, double>> merges(const Completed& all,
-                                                           const std::vector<Cell>& cells,
-                                                           const SolidOptions& options) {
-  std::map<std::pair<int, int>, std::pair<int, int>> sides;  // of a stroke on a surface
-  for (int c = 0; c < int(cells.size()); ++c)
-    for (const Loop& loop : cells[c].loops)
-      for (const LoopStroke& s : loop) {
-        if (all.origin[s.stroke] == EdgeOrigin::kSeen ||
-            !is_closed(all.sketch.strokes[s.stroke].kind))
-          continue;
-        auto& side =
-            sides.emplace(std::pair(s.stroke, cells[c].surface), std::pair(-1, -1)).first->second;
-        (s.forward ? side.first : side.second) = c;
-      }
-  std::vector<std::pair<std::pair<int, int>, double>> out;
-  for (const auto& [where, pair] : sides)
-    if (pair.first >= 0 && pair.second >= 0)
-      out.push_back({pair, face_price(all.surfaces[where.second].surface, options)});
-  return out;
-}
-
-CellChoice price(const Completed& all, double tolerance, const SolidOptions& options,
-                 const SolidEvidence& evidence, EvidenceOfCells* weighed) {
-  CellChoice choice;
-  for (int i = 0; i < int(all.surfaces.size()); ++i)
-    for (Cell& cell : cells_of(all.sketch, all.polylines, all.surfaces[i], i))
-      if (is_supported(cell, all.surfaces[i])) choice.cells.push_back(std::move(cell));
-  drop_doubles(&choice.cells, all.surfaces);
-  *weighed = weigh_cells(evidence, all.surfaces, choice.cells, largest_extent(all.sketch),
-                         options.evidence);
-  for (size_t c = 0; c < choice.cells.size(); ++c) {
-    const SurfaceStrokes& on = all.surfaces[choice.cells[c].surface];
-    choice.cell_price.push_back(face_price(on.surface, options) + weighed->against[c] - on.bonus);
-  }
-  choice.merges = merges(all, choice.cells, options);
-  for (const Meeting& m : weighed->object)
-    choice.covers.push_back({m.cells, options.evidence.ray * m.rays});
-  choice.exclusive = crossing_cells(all.surfaces, choice.cells, tolerance);
-  for (int s = 0; s < all.sketch.size(); ++s) {
-    const bool seen = all.origin[s] == EdgeOrigin::kSeen;
-    choice.used_price.push_back(used_price(all.origin[s], options));
-    choice.unused_price.push_back(seen ? unused_price(all.sketch.evidence[s]) : 0);
-  }
-  choice.double_price = options.double_price;
-  return choice;
-}
 
 // Is there a stroke on the surface that no face explains? What it does there nobody knows.
 bool holds_left(const Completed& all, const std::vector<bool>& left, const Surface& s) {
@@ -190,6 +62,8 @@ class Search {
     return copied || !doubles_of(all_.sketch, left_, 3 * tolerance_).empty();
   }
   SolidSearch with_copies() { return run(left_); }
+  // Any stroke may be others seen twice, even one that bounded a face.
+  SolidSearch with_doubles() { return run(std::vector<bool>(all_.seen.size(), true)); }
 
   // What can be said where no choice closes, or several do: of the cells that were tried last.
   // `each`: asks of each face beside an inferred edge whether the strokes can do without.
@@ -253,8 +127,8 @@ class Search {
   SolidSearch run(const std::vector<bool>& left) {
     SolidSearch out;
     CellChoice& choice = choice_;
-    choice = price(all_, tolerance_, options_, evidence_, &weighed_);
-    choice.doubles = doubles_of(all_.sketch, left, 3 * tolerance_);
+    choice = price_cells(all_, tolerance_, options_, evidence_,
+                         doubles_of(all_.sketch, left, 3 * tolerance_), &weighed_);
     out.surfaces = int(all_.surfaces.size());
     out.cells = int(choice.cells.size());
     const ChosenCells best = choose_cells(choice, {}, options_.nodes);
@@ -341,6 +215,7 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   const double tolerance = options.tolerance * largest_extent(sketch);
   // Thin walls ask for a fine tolerance, curves that err for a coarse one.
   std::vector<Search> searches;
+  searches.reserve(2);
   std::vector<SolidSearch> found;
   for (const double share : {1.0, 1.0 / 3}) {
     searches.emplace_back(sketch, share * tolerance, 3 * tolerance, options, evidence);
@@ -348,9 +223,14 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
     if (found.back().solid || found.back().surfaces > options.many_surfaces) break;
   }
   const bool many = found.front().surfaces > options.many_surfaces;
+  std::vector<Search*> more;
   for (size_t i = 0; i < searches.size() && !many && !found.back().solid; ++i)
-    if (!found[i].doubtful.empty() && searches[i].has_more())
+    if (!found[i].doubtful.empty() && searches[i].has_more()) {
       found.push_back(searches[i].with_copies());
+      more.push_back(&searches[i]);
+    }
+  for (size_t i = 0; i < more.size() && !found.back().solid; ++i)
+    found.push_back(more[i]->with_doubles());
   SolidSearch& last = found.back().solid ? found.back() : found.front();
   if (last.solid) {
     last.as_seen = last.solid->edges;
