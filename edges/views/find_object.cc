@@ -69,7 +69,7 @@ std::optional<Plane> find_table(const std::vector<Vector3d>& all,
   const int n = int(points.size());
   if (n < 20) return std::nullopt;
   const double tolerance = options.table_px * footprint;
-  std::mt19937 rng(1);
+  std::mt19937 rng(1u + options.seed);
   Plane best;
   Judged most;
   for (int trial = 0; trial < kTrials; ++trial) {

@@ -20,6 +20,7 @@ struct RegionOptions {
   double margin_px = 4;   ///< [px] around the object's points, on the table
   double reach_px = 20;   ///< [px] the same above it, where nothing else is near
   double least_share = 0.1;  ///< of the points that lie on a plane for it to be a table
+  int seed = 0;              ///< of the planes that are tried
 };
 
 /// Finds the object that the cameras look at among points on edges. The table is the plane with the

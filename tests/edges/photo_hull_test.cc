@@ -88,6 +88,17 @@ TEST(PhotoHull, LinesOfSightThatWouldLayMasksBareCountForNothing) {
   EXPECT_EQ(s.emptied, 0);
 }
 
+TEST(PhotoHull, AnotherSeedDrawsOtherPointsOfTheSameSurface) {
+  const std::vector<TrainingView> views = cube_views([](int) { return 0.5; });
+  PhotoHullOptions options = small_options();
+  const SurfaceSamples first = photo_hull_surface(views, kBox, 1000, options);
+  EXPECT_EQ(photo_hull_surface(views, kBox, 1000, options).position, first.position);
+  options.seed = 1;
+  const SurfaceSamples other = photo_hull_surface(views, kBox, 1000, options);
+  EXPECT_NE(other.position.col(0), first.position.col(0));
+  EXPECT_NEAR(double(other.position.cols()), double(first.position.cols()), 100);
+}
+
 // No two views agree on what shines.
 TEST(PhotoHull, KeepsTheVisualHullWhereCarvingWouldLayMasksBare) {
   const auto shiny = [](int view) { return 0.1 + 0.8 * std::fmod(0.618 * view, 1.0); };

@@ -58,7 +58,7 @@ class CylinderPool {
       normals_.row(k) = set.normal(from_[k]).transpose();
     }
     find_neighbours(kGap * spacing);
-    propose();
+    propose(options.seed);
   }
 
   // The cylinder with the largest connected set of free surfels, and that set, ascending; false if
@@ -97,9 +97,9 @@ class CylinderPool {
     for (int i = 0; i < int(from_.size()); ++i) near_[i] = tree.within(points_.row(i), radius);
   }
 
-  void propose() {
+  void propose(int seed) {
     const int n = int(from_.size()), pairs = std::min(kPairs * n, kMostPairs);
-    std::mt19937 random(1);
+    std::mt19937 random(1u + seed);
     for (int k = 0; k < pairs; ++k) {
       const int i = int(int64_t(k) * n / pairs);
       for (int walk = 0; walk < kWalks; ++walk) {

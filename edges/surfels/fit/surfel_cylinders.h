@@ -14,6 +14,7 @@ struct CylinderOptions {
       3.5;              ///< [deg] of normals along the axis, steady: else a cone, a sphere, a ring
   double arc_deg = 75;  ///< [deg] of a turn that a cylinder shows at least
   int fewest = 40;      ///< surfels that make a cylinder; 0: none are looked for
+  int seed = 0;         ///< of the pairs that are drawn
 };
 
 /// Lays surfels that make a cylinder exactly on it: pairs of neighbours propose cylinders, as in

@@ -45,7 +45,7 @@ class EdgePlanes {
   // Planes through the tangent of one point and another point, the best supported first.
   std::vector<Candidate> drawn() const {
     if (n_ < fewest_) return {};
-    std::mt19937 random(1);
+    std::mt19937 random(1u + options_.seed);
     std::vector<std::pair<int, double>> pairs(options_.tries);
     for (auto& p : pairs) p = {int(random() % n_), (random() % 65536) / 65536.0};
     std::vector<Candidate> out(pairs.size());

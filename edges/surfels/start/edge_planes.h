@@ -20,6 +20,7 @@ struct EdgePlaneOptions {
   double least_share = 0.006;  ///< of all points
   int tries = 6000;            ///< pairs of points that are drawn
   int most = 48;               ///< planes, at most 64
+  int seed = 0;                ///< of what is drawn
 };
 
 /// The planes that faces of the object lie in: RANSAC over pairs of edge points, near ones as often

@@ -179,12 +179,15 @@ double uncovered(const CellGrid& g, std::vector<Witness>* witnesses) {
 
 // Between planes first: the more lines are wrong, the larger the share of a region's cells that
 // they must cross. Then cell by cell.
-void carve_sights(const SureEdges& sure, double share, std::vector<Witness>* witnesses,
-                  CellGrid* grid, SurfaceSamples* samples) {
+void carve_sights(const SureEdges& sure, const PhotoHullOptions& options,
+                  std::vector<Witness>* witnesses, CellGrid* grid, SurfaceSamples* samples) {
+  const double share = options.sights;
   if (share <= 0 || sure.lines.empty()) return;
   const CellGrid hull = *grid;
   const double most = uncovered(hull, witnesses) + kMostPierced;
-  const std::vector<EdgePlane> planes = edge_planes(sure);
+  EdgePlaneOptions wanted;
+  wanted.seed = options.seed;
+  const std::vector<EdgePlane> planes = edge_planes(sure, wanted);
   samples->planes = int(planes.size());
   const PlaneCarving carving(sure, planes, hull);
   for (int times = 1; times <= kShares && times * share < 1; ++times) {
@@ -247,10 +250,10 @@ std::vector<Crossing> crossings(const CellGrid& g, double* area) {
   return out;
 }
 
-// Points no nearer to each other than `spacing`, drawn in a fixed disorder.
+// Points no nearer to each other than `spacing`, drawn in a disorder that the seed fixes.
 std::vector<Crossing> thinned(std::vector<Crossing> all, const Eigen::AlignedBox3d& box,
-                              double spacing) {
-  std::mt19937 random(1);
+                              double spacing, int seed) {
+  std::mt19937 random(1u + seed);
   for (size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
   const Eigen::Vector3i n = (box.sizes() / spacing).array().ceil().cast<int>() + 3;
   std::vector<std::vector<int>> bins(size_t(n.x()) * n.y() * n.z());
@@ -287,7 +290,7 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
   for (int v = 0; v < int(views.size()); ++v)
     witnesses[v] = make_witness(views[v], cell, bounds.center());
   CellGrid grid = visual_hull(witnesses, bounds, options.cells);
-  carve_sights(sure, options.sights, &witnesses, &grid, &samples);
+  carve_sights(sure, options, &witnesses, &grid, &samples);
   const CellGrid pierced = grid;
   samples.carved = carve(options, &witnesses, &grid);
   if (samples.carved > 0 &&
@@ -302,7 +305,7 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
   samples.spacing = std::sqrt(0.7 * area / count);
   const Eigen::AlignedBox3d box(grid.low,
                                 grid.low + grid.cell * Eigen::Vector3d(grid.nx, grid.ny, grid.nz));
-  const std::vector<Crossing> kept = thinned(all, box, samples.spacing);
+  const std::vector<Crossing> kept = thinned(all, box, samples.spacing, options.seed);
   samples.position.resize(3, kept.size());
   samples.normal.resize(3, kept.size());
   for (size_t i = 0; i < kept.size(); ++i) {

@@ -17,6 +17,7 @@ struct PhotoHullOptions {
   double sights = 0.25;     ///< share of the cells between planes that lines of sight must cross to
                             ///< empty them; 0: lines are not looked at
   double agree = 0.75;      ///< share of the views that must be able to see one grey
+  int seed = 0;             ///< of the planes and the points that are drawn
 };
 
 /// Points on a closed surface.
