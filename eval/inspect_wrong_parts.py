@@ -62,7 +62,7 @@ def inspect_plate(binary, work, seed, tolerance):
         run([binary] + part + [scene] + VIEWS + WRONG)
     if not os.path.exists(result + "/sketch.json"):
         run([binary, "reconstruct", scene, "--out", result, "-q", "--overlays", "0",
-             "--no-regularize"])
+             "--without", "regularize"])
     truth = nominal + "/groundtruth/sketch.json"
     began = time.time()
     run([binary, "inspect", result, "--nominal", truth, "--tolerance", str(tolerance), "--scale",

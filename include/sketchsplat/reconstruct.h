@@ -57,7 +57,7 @@ struct Options {
   /// stage. May be empty.
   std::function<bool(const StageProgress&)> progress;
   /// Everything that `sketchsplat reconstruct --help-all` lists, by name and value as text:
-  /// {"rounds", "1"}, {"second-look", "false"}.
+  /// {"rounds", "1"}, {"without", "second-look,missing"}.
   std::map<std::string, std::string> expert;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/base/fields.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -62,7 +63,32 @@ void assign_number(const Field& field, const std::string& text, T* target) {
   *target = value;
 }
 
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c == ',' || c == '\n')
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  return words;
+}
+
+// In the order of the choices, so that equal sets are equal texts.
+void assign_words(const Field& field, const std::string& text, std::string* target) {
+  const std::vector<std::string> words = words_of(text), &all = field.choices;
+  for (const std::string& word : words) {
+    const bool none = word == "none" && words.size() == 1;
+    if (!none && std::find(all.begin(), all.end(), word) == all.end()) refuse(field, word);
+  }
+  std::string sorted;
+  for (const std::string& choice : all)
+    if (picked(text, choice)) sorted += (sorted.empty() ? "" : ",") + choice;
+  *target = sorted.empty() ? "none" : sorted;
+}
+
 void assign_text(const Field& field, const std::string& text, std::string* target) {
+  if (field.many) return assign_words(field, text, target);
   if (text.empty() || (!field.choices.empty() && match_choice(field.choices, text) < 0))
     refuse(field, text);
   *target = text;
@@ -118,6 +144,16 @@ Field& Fields::choose(const std::string& name, std::string* value,
   return push(name, value, choices, help);
 }
 
+Field& Fields::pick(const std::string& name, std::string* value,
+                    const std::vector<std::string>& choices, const std::string& help) {
+  Field& field = push(name, value, choices, help);
+  for (const std::string& choice : choices)
+    field.help += (&choice == &choices.front() ? ", with commas between: " : ", ") + choice;
+  field.unit = "NAME,...";
+  field.many = field.several = true;
+  return field;
+}
+
 std::string text_of(const Field& field) {
   if (const auto* b = std::get_if<bool*>(&field.value)) return **b ? "true" : "false";
   if (const auto* i = std::get_if<int*>(&field.value)) return std::to_string(**i);
@@ -145,7 +181,7 @@ void assign(const Field& field, const std::string& text) {
 
 std::string allowed(const Field& field) {
   if (!field.choices.empty()) {
-    std::string words = "one of ";
+    std::string words = field.many ? "none or some of " : "one of ";
     for (size_t i = 0; i < field.choices.size(); ++i)
       words += (i > 0 ? ", " : "") + field.choices[i];
     return words;
@@ -181,6 +217,30 @@ const Field* find_field(const std::vector<Field>& fields, const std::string& nam
   for (const Field& field : fields)
     if (field.name == name) return &field;
   return nullptr;
+}
+
+bool picked(const std::string& text, const std::string& word) {
+  const std::vector<std::string> words = words_of(text);
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string successor(const std::vector<Field>& fields, const std::string& name) {
+  const std::string word = name.rfind("no-", 0) == 0 ? name.substr(3) : name;
+  for (const Field& field : fields) {
+    for (const std::string& former : field.former)
+      if (former == name) return field.name;
+    const std::vector<std::string>& all = field.choices;
+    if (field.many && std::find(all.begin(), all.end(), word) != all.end())
+      return field.name + " " + word;
+  }
+  return "";
+}
+
+std::string unknown_option(const std::vector<Field>& fields, const std::string& name,
+                           const std::string& verb) {
+  const std::string now = successor(fields, name);
+  return "unknown option " + name + (now.empty() ? "" : ", replaced by " + now) +
+         " (see sketchsplat " + verb + " --help-all)";
 }
 
 std::string fields_json(const std::vector<Field>& fields) {

@@ -30,18 +30,20 @@ struct Field {
   double low = -std::numeric_limits<double>::infinity();  ///< closed range of a number
   double high = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices;  ///< allowed texts; "maps:NAME" allows any text after "maps:"
-  std::string help;                  ///< one line, no full stop
-  std::string group;                 ///< heading in --help
-  std::string initial;               ///< text of the value when it was listed: the default
-  std::string short_name;            ///< "o": also -o; empty if there is none
+  bool many = false;  ///< the text is "none", or some of the choices with commas between
+  std::vector<std::string> former;  ///< names of options that this one stands for now
+  std::string help;                 ///< one line, no full stop
+  std::string group;                ///< heading in --help
+  std::string initial;              ///< text of the value when it was listed: the default
+  std::string short_name;           ///< "o": also -o; empty if there is none
   bool required = false;
   std::string unless;  ///< a required option need not be given if this one is
   bool positional = false;
-  bool several = false;  ///< a text that may be given many times, joined by '\n'
-  bool takes_more = false;  ///< all values up to the next flag, not one at a time
+  bool several = false;         ///< a text that may be given many times, joined by '\n'
+  bool takes_more = false;      ///< all values up to the next flag, not one at a time
   bool value_optional = false;  ///< "--name" alone is a text "-"
-  bool alone = false;    ///< a flag that is a task of its own: nothing else is required then
-  bool expert = false;   ///< shown by --help-all, not by --help
+  bool alone = false;           ///< a flag that is a task of its own: nothing else is required then
+  bool expert = false;          ///< shown by --help-all, not by --help
   std::function<void()> applied;  ///< called after a user's value was assigned; may be empty
 };
 
@@ -63,6 +65,10 @@ class Fields {
              const std::string& help);
   Field& choose(const std::string& name, std::string* value,
                 const std::vector<std::string>& choices, const std::string& help);
+  /// Some of `choices`, or "none": a text of them in the order of `choices`, with commas between.
+  /// Choices that were switches of their own once are found by their names, see successor().
+  Field& pick(const std::string& name, std::string* value, const std::vector<std::string>& choices,
+              const std::string& help);
   /// `choices` in the order of the enum's values, which count from 0.
   template <typename Enum>
   Field& choose(const std::string& name, Enum* value, const std::vector<std::string>& choices,
@@ -95,6 +101,17 @@ std::string facts(const Field& field);
 
 /// Field by its name; null if there is none.
 const Field* find_field(const std::vector<Field>& fields, const std::string& name);
+
+/// Is it one of the words of a text that was made by Fields::pick()?
+bool picked(const std::string& text, const std::string& word);
+
+/// How the command line says now what an option that there is not any more said, without dashes:
+/// "without conics" for "no-conics". Empty if there never was one, or nothing replaces it.
+std::string successor(const std::vector<Field>& fields, const std::string& name);
+
+/// A complaint that a verb has no option of this name, with its successor if there is one.
+std::string unknown_option(const std::vector<Field>& fields, const std::string& name,
+                           const std::string& verb);
 
 /// All values as one JSON object (as text), in the order of the list.
 std::string fields_json(const std::vector<Field>& fields);

@@ -9,12 +9,19 @@
 namespace sketchsplat {
 namespace {
 
-// The later of two texts for one option wins.
+// The later of two texts for one option wins; but steps that are left out add up.
 void add_options(const OptionTexts& more, OptionTexts* options) {
   for (const auto& [name, text] : more) {
     bool known = false;
-    for (auto& [n, t] : *options)
-      if (n == name) t = text, known = true;
+    for (auto& [n, t] : *options) {
+      if (n != name) continue;
+      const bool both = name == "without" && t != "none";
+      if (!both)
+        t = text;
+      else if (text != "none")
+        t += "," + text;
+      known = true;
+    }
     if (!known) options->push_back({name, text});
   }
 }

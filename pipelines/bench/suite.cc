@@ -261,8 +261,7 @@ class OptionCheck {
     for (const auto& [name, text] : options) {
       const bool nested = name.find('.') != std::string::npos;  // the verb itself reads NAME=VALUE
       const Field* field = find_field(fields_.list, name.substr(0, name.find('.')));
-      if (!field || field->positional)
-        throw UsageError("unknown option " + name + " (see sketchsplat " + name_ + " --help)");
+      if (!field || field->positional) throw UsageError(unknown_option(fields_.list, name, name_));
       if (!nested) assign(*field, text);
     }
   }

@@ -10,7 +10,7 @@ constexpr size_t kColumn = 30;  // where help lines start
 constexpr size_t kWidth = 100;
 
 std::string placeholder(const Field& field) {
-  if (!field.choices.empty()) {
+  if (!field.choices.empty() && !field.many) {
     std::string words;
     for (const std::string& choice : field.choices) words += (words.empty() ? "" : "|") + choice;
     return words;

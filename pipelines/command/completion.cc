@@ -16,7 +16,7 @@ Value value_of(const Field& field) {
   return names("DIR") || names("SCENE") || names("ROOT") ? Value::kFolder : Value::kAnything;
 }
 
-// "--conics" and "--no-conics", "--out", "-o"; nothing for what has no name.
+// "--masks" and "--no-masks", "--out", "-o"; nothing for what has no name.
 std::vector<std::string> flags_of(const Field& field) {
   if (field.positional) return {};
   std::vector<std::string> flags = {"--" + field.name};

@@ -23,8 +23,7 @@ bool is_of_one_run(const Field& field) {
 std::vector<CLI::ConfigItem> items_of(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
-  if (!fs::is_regular_file(path, error))
-    throw InputError(path, "a file of options", "none");
+  if (!fs::is_regular_file(path, error)) throw InputError(path, "a file of options", "none");
   const std::uintmax_t bytes = fs::file_size(path, error);
   if (error || bytes > kMostBytes)
     throw InputError(path, "a file of options of at most 1 MB", std::to_string(bytes) + " bytes");
@@ -48,9 +47,12 @@ const Field& field_of(const std::string& path, const std::string& name,
   std::vector<std::string> names;
   for (const Field& f : fields)
     if (!is_of_one_run(f)) names.push_back(f.name);
-  const std::string near = field ? "" : nearest_word(name, names);
+  const std::string now = successor(fields, name), near = nearest_word(name, names);
   throw InputError(path, "the name of an option",
-                   "'" + name + "'" + (near.empty() ? "" : ", did you mean " + near + "?"));
+                   "'" + name + "'" +
+                       (!now.empty()            ? ", replaced by --" + now
+                        : field || near.empty() ? ""
+                                                : ", did you mean " + near + "?"));
 }
 
 // Text between quotation marks that it does not hold.
@@ -71,7 +73,7 @@ std::string value_text(const Field& field) {
   if (!field.several) return quoted(field.name, text);
   std::string out;
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);)
+  for (std::string line; std::getline(lines, line, field.many ? ',' : '\n');)
     out += (out.empty() ? "" : ", ") + quoted(field.name, line);
   return "[" + out + "]";
 }

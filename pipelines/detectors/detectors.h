@@ -18,6 +18,8 @@ namespace sketchsplat {
 
 /// Where edges come from, and the options of everything that may find them.
 struct DetectionOptions {
+  int seed = 0;  ///< of everything that is drawn at random: starts, trials of RANSAC
+  std::string without = "none";  ///< steps that are left out, as the user names them, see steps.h
   /// "image": the pictures; "geometry": depth and normal maps in the scene's folder; "2dgs-sn":
   /// depth and normals of surfels fitted to the pictures; "maps:NAME": edge maps of others.
   std::string detector = "image";

@@ -39,7 +39,9 @@ std::vector<char> beside(const EdgelMap& a, const EdgelMap& b, double reach_px, 
 
 class SurfelDetector : public Detector {
  public:
-  explicit SurfelDetector(const DetectionOptions& options) : options_(options) {}
+  explicit SurfelDetector(const DetectionOptions& options) : options_(options) {
+    options_.surfels.hull.seed = options_.surfels.cylinders.seed = options_.seed;
+  }
 
   void prepare(const Scene& scene, RunReport* report, Progress* progress) override {
     fit_surfels(scene, report, progress);

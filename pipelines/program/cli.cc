@@ -104,10 +104,14 @@ void check_required(const Verb& verb, const Texts& texts) {
   for (const Field& field : fields)
     if (!field.positional) flags.push_back("--" + field.name);
   const bool is_flag = extra.size() > 1 && extra[0] == '-';
-  const std::string near = is_flag ? nearest_word(extra.substr(0, extra.find('=')), flags) : "";
+  const std::string flag = extra.substr(0, extra.find('='));
+  const std::string near = is_flag ? nearest_word(flag, flags) : "";
+  const std::string now = flag.rfind("--", 0) == 0 ? successor(fields, flag.substr(2)) : "";
   throw UsageError((is_flag ? "unknown option " : "unexpected argument ") + extra +
-                   (near.empty() ? "" : ", did you mean " + near + "?") + " (see sketchsplat " +
-                   (verb.empty() ? "" : verb + " ") + "--help)");
+                   (!now.empty()   ? ", replaced by --" + now
+                    : near.empty() ? ""
+                                   : ", did you mean " + near + "?") +
+                   " (see sketchsplat " + (verb.empty() ? "" : verb + " ") + "--help)");
 }
 
 std::string verb_names(const std::vector<Verb>& verbs) {

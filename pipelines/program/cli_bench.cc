@@ -30,12 +30,16 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
+// "rounds=1,without=conics,close": what has no name of its own belongs to the value before it.
 OptionTexts option_texts(const std::string& text) {
   OptionTexts options;
   for (const std::string& part : split(text, ',')) {
     const size_t equals = part.find('=');
-    if (equals == std::string::npos)
-      throw UsageError("--with: expected NAME=VALUE, got '" + part + "'");
+    if (equals == std::string::npos) {
+      if (options.empty()) throw UsageError("--with: expected NAME=VALUE, got '" + part + "'");
+      options.back().second += "," + part;
+      continue;
+    }
     options.push_back({part.substr(0, equals), part.substr(equals + 1)});
   }
   return options;

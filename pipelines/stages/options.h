@@ -57,7 +57,6 @@ using ScaleOf = std::function<std::optional<StatedScale>(const Sketch& sketch, d
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
 struct ReconstructOptions : DetectionOptions {
   std::string preset = "balanced";
-  int seed = 0;  ///< copied from CommonOptions
   /// Pictures at least twice as large are made smaller, to no less than this [px], see
   /// smaller_pictures.h; 0: never.
   int least_side = 1200;

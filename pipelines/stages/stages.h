@@ -31,7 +31,7 @@ std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptio
                                   RunReport* report, Progress* progress);
 
 /// How strokes are chosen: at one price and by one least deviation for all that is described, and
-/// with the tolerance that edges of the detector need (--surfel-sigma).
+/// with the tolerance that edges of the detector need (surfel_sigma_px).
 SelectOptions select_options(const ReconstructOptions& options);
 
 /// Strokes from lifted points: linked to chains, cut into the simplest curves, moved onto the

@@ -69,6 +69,7 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
   const std::vector<EdgePoint> points = lift_edges(coarse, lift);
   RegionOptions look;
   look.min_views = lift.min_views;
+  look.seed = options.seed;
   std::vector<Eigen::Vector3d> cameras;
   for (const View& v : world.views) cameras.push_back(v.center_in_world());
   const ObjectRegion object =

@@ -176,7 +176,8 @@ void tell(const std::vector<Detection>& found, const std::vector<ViewScore>& sco
   if (arguments.score) tell_scores(mean, maps, scores);
 }
 
-void run_detect(const DetectArguments& arguments, bool json, Progress* progress) {
+void run_detect(DetectArguments arguments, const CommonOptions& common, Progress* progress) {
+  arguments.detection.seed = common.seed;
   Scene scene = open_scene(arguments.scene, arguments.open);
   if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
   for (const std::string& warning : scene.warnings) progress->warn(warning);
@@ -188,7 +189,7 @@ void run_detect(const DetectArguments& arguments, bool json, Progress* progress)
   const std::string surfels = detector->surfels();
   if (arguments.geometry && !surfels.empty())
     write_atomically(arguments.out + "/surfels.ply", [&](std::ostream& file) { file << surfels; });
-  tell(found, scores, arguments, json);
+  tell(found, scores, arguments, common.json);
 }
 
 }  // namespace
@@ -221,7 +222,7 @@ Verb detect_verb() {
                    "sketchsplat detect scenes/part --out out/part --detector geometry --score"};
   verb.fields = f.list;
   verb.run = [arguments](const CommonOptions& common, Progress* progress) {
-    run_detect(*arguments, common.json, progress);
+    run_detect(*arguments, common, progress);
   };
   return verb;
 }

@@ -204,7 +204,7 @@ Verb reconstruct_verb() {
   out.required = true;
   out.short_name = "o";
   f.choose("format", &arguments->open.format, scene_formats(),
-           "What the folder is; if left out, its files decide")
+           "The folder is read as this; if it is left out, its files decide")
       .expert = true;
   f.add("allow-outside", &arguments->open.allow_outside,
         "Read images that the scene file places outside of its folder, too")
@@ -212,7 +212,7 @@ Verb reconstruct_verb() {
   f.add("dry-run", &arguments->dry_run,
         "Say what would be read, and what it takes");
   f.add("like-folder", &arguments->method.like_folder, "DIR",
-        "Where relative paths of --like begin; results do not tell it")
+        "Relative paths of --like begin in this folder, which results do not tell")
       .expert = true;
   f.add("images", &arguments->images, "DIR",
         "Photographs without cameras: COLMAP finds them first");

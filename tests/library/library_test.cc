@@ -81,6 +81,10 @@ TEST_F(Library, ExpertOptionsCountAndWrongOnesAreRefused) {
   EXPECT_EQ(reconstruct(views_, options).ending, Ending::kTooLittle);
   options.expert = {{"min-lenght", "1000"}};
   EXPECT_THROW(reconstruct(views_, options), std::invalid_argument);
+  options.expert = {{"conics", "false"}};  // is --without conics
+  EXPECT_THROW(reconstruct(views_, options), std::invalid_argument);
+  options.expert = {{"without", "conix"}};
+  EXPECT_THROW(reconstruct(views_, options), std::invalid_argument);
   options.expert = {{"rounds", "-1"}};
   EXPECT_THROW(reconstruct(views_, options), std::invalid_argument);
 }

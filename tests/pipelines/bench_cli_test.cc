@@ -110,8 +110,10 @@ TEST(Ablation, VariantsAreDifferentAndOneIsTheWholeMethod) {
 }
 
 TEST_F(Bench, WithOverridesPresets) {
-  ASSERT_EQ(bench(scene_ + " --presets balanced --with rounds=0,final-polish=false").status, 0);
+  ASSERT_EQ(bench(scene_ + " --presets balanced --with without=close,final-polish,rounds=0").status,
+            0);
   EXPECT_FALSE(rows()[0].contains("round"));
+  EXPECT_THAT(std::string(rows()[0]["options"]), HasSubstr("--without close,final-polish"));
 }
 
 TEST_F(Bench, RowsThatAreThereAreNotRunAgain) {

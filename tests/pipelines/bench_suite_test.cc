@@ -66,6 +66,20 @@ axes:
   EXPECT_THAT(threads[1][0].reconstruct, testing::Contains(Pair("threads", "2")));
 }
 
+TEST(Suite, StepsThatAreLeftOutAddUp) {
+  const TempFolder folder;
+  const Suite suite = suite_of_text(
+      folder,
+      "parts: [box]\npresets: [fast]\nreconstruct: {without: close}\naxes:\n  - {name: a, "
+      "vary: reconstruct.without, levels: [none, conics], report: constant}\n");
+  const std::vector<BenchLevel> levels =
+      plan_jobs(suite, &suite.axes[0], {{"without", "regularize"}});
+  EXPECT_THAT(levels[1][0].reconstruct,
+              testing::Contains(Pair("without", "close,regularize,conics")));
+  EXPECT_THAT(levels[0][0].reconstruct, testing::Contains(Pair("without", "close,regularize")));
+  EXPECT_THROW(suite_of_text(folder, "parts: [box]\nreconstruct: {conics: false}\n"), InputError);
+}
+
 TEST(Suite, MayBeJson) {
   const TempFolder folder;
   EXPECT_EQ(suite_of_text(folder, R"({"name": "j", "parts": ["box"]})").name, "j");
@@ -102,8 +116,8 @@ TEST(Suite, LevelsOfADropAreNumbersOrTrueAndFalse) {
 
 TEST(Flags, AreWhatAUserWouldType) {
   const std::vector<Field> fields = reconstruct_verb().fields;
-  EXPECT_THAT(flags_of({{"preset", "fast"}, {"simplify", "false"}, {"param.gap", "0.1"}}, fields),
-              ElementsAre("--preset", "fast", "--no-simplify", "--param", "gap=0.1"));
+  EXPECT_THAT(flags_of({{"preset", "fast"}, {"inferred", "false"}, {"param.gap", "0.1"}}, fields),
+              ElementsAre("--preset", "fast", "--no-inferred", "--param", "gap=0.1"));
   EXPECT_THAT(flags_of({{"noise", "2"}, {"part", "box"}}, synthesize_verb().fields),
               ElementsAre("box", "--noise", "2"));
 }

@@ -84,8 +84,35 @@ TEST_F(Program, HelpOfReconstructFitsOnAPageAndSaysWhereTheRestIs) {
   EXPECT_LE(count_lines(some), 40);
   EXPECT_THAT(some, AllOf(HasSubstr("--preset"), HasSubstr("--threads"), HasSubstr("--scale"),
                           HasSubstr("--min-confidence"), HasSubstr("--help-all shows ")));
-  EXPECT_THAT(some, testing::Not(HasSubstr("--lift-stride")));
-  EXPECT_THAT(all, AllOf(HasSubstr("--lift-stride"), HasSubstr("Threads to use")));
+  EXPECT_THAT(some, testing::Not(HasSubstr("--lift-views")));
+  EXPECT_THAT(all, AllOf(HasSubstr("--lift-views"), HasSubstr("Threads to use")));
+}
+
+TEST_F(Program, AtMostFortyOptionsOfAVerbAreForExpertsAlone) {
+  const std::regex more("--help-all shows ([0-9]+) more options");
+  for (const std::string& verb : verbs_in(run("--help").out)) {
+    const std::string help = run(verb + " --help").out;
+    std::smatch count;
+    const bool any = std::regex_search(help, count, more);
+    if (verb == "reconstruct") EXPECT_TRUE(any);
+    if (any) EXPECT_LE(std::stoi(count[1]), 40) << verb;
+  }
+}
+
+TEST_F(Program, AStepIsLeftOutByItsNameAndAnOptionThatIsGoneNamesWhatReplacesIt) {
+  const std::string work = "reconstruct " + scene() + " --dry-run --out " + in_folder("dry");
+  EXPECT_EQ(run(work + " --without conics,surfel-merge --without close").status, 0);
+  for (const auto& [given, answer] : std::vector<std::pair<std::string, std::string>>{
+           {"--without conic", "--without: expected none or some of conics, rewrite, "},
+           {"--without none,conics", "got 'none'"},
+           {"--no-conics", "unknown option --no-conics, replaced by --without conics (see "},
+           {"--surfel-planes 0", "replaced by --without surfel-planes "},
+           {"--geometry-min-chain=3", "replaced by --detect-min-chain "}}) {
+    const Outcome o = run(work + " " + given);
+    EXPECT_EQ(o.status, kWrongUsage) << given;
+    EXPECT_EQ(count_lines(o.err), 1) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(answer)) << given;
+  }
 }
 
 TEST_F(Program, ThreadsThatWaitSpinForMicrosecondsUnlessTheUserSaysSo) {

@@ -41,10 +41,11 @@ class Config : public Program {
 TEST_F(Config, WhatIsSavedIsReadAgain) {
   EXPECT_EQ(saved(""), "[reconstruct]\n");
   const std::string some = saved(
-      "--detector geometry --min-nats 2.5 --no-surfel-shading --like 'a b.json' --like c.json");
-  EXPECT_EQ(some,
-            "[reconstruct]\ndetector = \"geometry\"\nsurfel-shading = false\n"
-            "like = [\"a b.json\", \"c.json\"]\nmin-nats = 2.5\n");
+      "--detector geometry --min-nats 2.5 --without close,conics --like 'a b.json' --like c.json");
+  EXPECT_EQ(
+      some,
+      "[reconstruct]\ndetector = \"geometry\"\n"
+      "like = [\"a b.json\", \"c.json\"]\nwithout = [\"conics\", \"close\"]\nmin-nats = 2.5\n");
   EXPECT_EQ(saved("--config " + file_of(some)), some);
 }
 
@@ -59,6 +60,9 @@ TEST_F(Config, WhatIsNoOptionIsRefusedInOneLine) {
   expect_refused("min-natz = 3\n", "found 'min-natz', did you mean min-nats?");
   expect_refused("min-nats = much\n", "min-nats");
   expect_refused("min-nats = [1, 2]\n", "expected one value of min-nats, found 2");
+  expect_refused("conics = false\n", "found 'conics', replaced by --without conics");
+  expect_refused("map-min-chain = 3\n", "found 'map-min-chain', replaced by --detect-min-chain");
+  expect_refused("without = [\"close\", \"conic\"]\n", "got 'conic'");
   expect_refused("out = \"elsewhere\"\n", "found 'out'");
   expect_refused("config = \"options.toml\"\n", "found 'config'");
   fs::remove(in_folder("options.toml"));

@@ -68,6 +68,36 @@ TEST(Fields, RefusalNamesFlagRangeAndWhatItGot) {
   EXPECT_EQ(s.rounds, 7) << "a refused value must not be assigned";
 }
 
+TEST(Fields, SomeOfAListAreOneTextInItsOrder) {
+  std::string without = "none";
+  Fields f;
+  f.pick("without", &without, {"a", "b", "c"}, "Left out");
+  const Field& field = f.list[0];
+  EXPECT_EQ(field.help, "Left out, with commas between: a, b, c");
+  assign(field, "c,a\nc");
+  EXPECT_EQ(without, "a,c");
+  EXPECT_TRUE(picked(without, "c"));
+  EXPECT_FALSE(picked(without, "b"));
+  for (const char* text : {"", "a,", "ab", "a b", "none,a"})
+    EXPECT_THAT(refusal(field, text), HasSubstr("none or some of a, b, c, got '")) << text;
+  EXPECT_EQ(without, "a,c");
+  assign(field, "none");
+  EXPECT_EQ(without, "none");
+}
+
+TEST(Fields, WhatAnOptionWasCalledLeadsToWhatReplacesIt) {
+  std::string without = "none";
+  int size = 0;
+  Fields f;
+  f.pick("without", &without, {"a"}, "Left out");
+  f.add("size", &size, "px", 0, 9, "Size").former = {"width"};
+  EXPECT_EQ(successor(f.list, "no-a"), "without a");
+  EXPECT_EQ(successor(f.list, "a"), "without a");
+  EXPECT_EQ(successor(f.list, "width"), "size");
+  EXPECT_EQ(successor(f.list, "height"), "");
+  EXPECT_EQ(successor(f.list, "size"), "");
+}
+
 TEST(Fields, WhatIsNoNumberIsRefused) {
   Sample s;
   const auto f = list(&s);
@@ -122,6 +152,36 @@ TEST(Options, EveryFieldHasAUniqueNameAndOneLineOfHelp) {
     EXPECT_FALSE(field.help.empty()) << field.name;
     EXPECT_EQ(field.help.find('\n'), std::string::npos) << field.name;
   }
+}
+
+TEST(Options, StepsThatAreLeftOutAreOffAndAllOthersAreAsTheyWere) {
+  ReconstructOptions options;
+  Fields f;
+  list_fields(&options, &f);
+  const Field* without = find_field(f.list, "without");
+  ASSERT_NE(without, nullptr);
+  const auto leave_out = [&](const std::string& text) {
+    assign(*without, text);
+    without->applied();
+  };
+  leave_out("close,surfel-smoothness,surfel-planes");
+  EXPECT_FALSE(options.close.on);
+  EXPECT_EQ(options.surfels.smoothness, 0);
+  EXPECT_EQ(options.surfels.planes.fewest, 0);
+  EXPECT_TRUE(options.regularize.on);
+  leave_out("regularize");
+  EXPECT_FALSE(options.regularize.on);
+  EXPECT_TRUE(options.close.on);
+  EXPECT_EQ(options.surfels.smoothness, SurfelFieldOptions().smoothness);
+  EXPECT_EQ(options.surfels.planes.fewest, SurfelFieldOptions().planes.fewest);
+}
+
+TEST(Options, EdgesOfAllDetectorsHaveOneLeastLength) {
+  ReconstructOptions options;
+  set_options({{"detect-min-chain", "9"}}, &options);
+  EXPECT_EQ(options.detect.min_chain, 9);
+  EXPECT_EQ(options.maps.min_chain, 9);
+  EXPECT_EQ(options.geometry.min_chain, 9);
 }
 
 TEST(Options, BalancedIsTheDefaults) {
