@@ -17,6 +17,10 @@
 namespace sketchsplat {
 namespace {
 
+// Grey levels of 255 per px: where an edge starts, and down to where it goes on, without noise.
+constexpr double kHighFloor = 1.5, kLowFloor = 0.6;
+constexpr double kPedestal = 0.5;  // contrast between object and background where alpha is the mask
+
 // The part of the picture that can hold edges, as one channel.
 struct Composite {
   cv::Mat1f value;
@@ -59,7 +63,7 @@ Composite composite(const Picture& picture, const DetectOptions& options) {
       const float a = masked ? picture.alpha.at(x, y) : 1.f;
       const float grey = 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
                          0.114f * picture.blue.at(x, y);
-      c.value(v, u) = masked ? a * (grey + float(options.pedestal)) : grey;
+      c.value(v, u) = masked ? a * (grey + float(kPedestal)) : grey;
       c.inside(v, u) = a >= 1.f ? 255 : 0;
     }
   return c;
@@ -176,9 +180,8 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   const Gradient g = gradient_of(c.value, options.sigma_px);
   // White noise of variance 1 has gradient variance 1 / (8 pi sigma^4) by component.
   const double unit = 1.0 / (std::sqrt(8 * M_PI) * options.sigma_px * options.sigma_px);
-  const float low = float(std::max(options.low_floor / 255, options.low_sigma * unit * map.noise));
-  const float high =
-      float(std::max(options.high_floor / 255, options.high_sigma * unit * map.noise));
+  const float low = float(std::max(kLowFloor / 255, options.low_sigma * unit * map.noise));
+  const float high = float(std::max(kHighFloor / 255, options.high_sigma * unit * map.noise));
   chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
   keep_meaningful(g.magnitude, outline_band(c, options.sigma_px), options.meaning, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;

@@ -88,9 +88,6 @@ struct DetectOptions {
   double sigma_px = 1.0;    ///< [px] smoothing of the gradient
   double high_sigma = 7.0;  ///< an edge starts at this many standard deviations of the noise
   double low_sigma = 3.0;   ///< and is followed down to this many
-  double high_floor = 1.5;  ///< [grey levels of 255 per px] the same for noiseless images
-  double low_floor = 0.6;   ///< [grey levels of 255 per px]
-  double pedestal = 0.5;    ///< contrast between object and background where alpha is the mask
   int min_chain = 6;        ///< [px] shorter chains are dropped
   double reach_px = 4.0;    ///< [px] of the look-up
   MeaningOptions meaning;

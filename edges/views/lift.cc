@@ -14,6 +14,10 @@ namespace {
 
 constexpr int kBins = 8;  // directions of the tangent inside the plane of its edgel, over 180 deg
 
+constexpr double kMatchPx = 1.5;  // largest distance of an edgel that supports a depth
+constexpr double kInlierPx = 1;   // the same after the point was refined
+constexpr double kAngleDeg = 12;  // largest angle of its plane to the tangent
+
 using Matrix34f = Eigen::Matrix<float, 3, 4>;
 
 Matrix34f projection(const View& view) {
@@ -139,7 +143,7 @@ void Sweeper::vote(int view, int index, int other, const Ray& ray,
   const Eigen::Vector3f b = P.leftCols<3>() * (ray.step * ray.direction).cast<float>();
   const Eigen::Vector3f own = world_.plane_normal[view].col(index);
   const Eigen::Vector3f e1 = ray.e1.cast<float>(), e2 = ray.e2.cast<float>();
-  const float reach = float(options_.match_px), inv = 1.f / (reach * reach);
+  const float reach = float(kMatchPx), inv = 1.f / (reach * reach);
   int last = -1;
   float bin = 0, gain = 0;
   for (int k = 0; k < ray.count; ++k) {
@@ -197,9 +201,8 @@ void Sweeper::collect(int view, int index, const Eigen::Vector3d& x, const Eigen
 
 bool Sweeper::refine(int view, int index, Eigen::Vector3d x, Eigen::Vector3d t, EdgePoint* point,
                      std::vector<Match>* matches) const {
-  const double reach[4] = {options_.match_px, options_.match_px, options_.inlier_px,
-                           options_.inlier_px};
-  const double tight = std::sin(options_.angle_deg * M_PI / 180);
+  const double reach[4] = {kMatchPx, kMatchPx, kInlierPx, kInlierPx};
+  const double tight = std::sin(kAngleDeg * M_PI / 180);
   const double sine[4] = {std::max(0.45, tight), std::max(0.3, tight), tight, tight};
   for (int it = 0; it < 4; ++it) {
     collect(view, index, x, t, reach[it], sine[it], matches);
@@ -222,7 +225,7 @@ bool Sweeper::refine(int view, int index, Eigen::Vector3d x, Eigen::Vector3d t, 
     H += t * t.transpose() * (H.trace() + 1e-300);  // stay: nothing is known along the edge
     x += H.ldlt().solve(g);
   }
-  collect(view, index, x, t, options_.inlier_px, tight, matches);
+  collect(view, index, x, t, kInlierPx, tight, matches);
   if (int(matches->size()) < options_.min_views) return false;
   double sum = 0;
   for (const Match& m : *matches) {
@@ -230,7 +233,7 @@ bool Sweeper::refine(int view, int index, Eigen::Vector3d x, Eigen::Vector3d t, 
     double depth;
     const Eigen::Vector2d p = world_.views[m.view].project(x, &depth);
     const double d = (p.x() - e.x) * e.nx + (p.y() - e.y) * e.ny;
-    if (m.view == view && std::abs(d) > options_.inlier_px) return false;  // left its own edgel
+    if (m.view == view && std::abs(d) > kInlierPx) return false;  // left its own edgel
     sum += d * d;
   }
   point->position = x;

@@ -49,9 +49,6 @@ struct EdgePoint {
 struct LiftOptions {
   double stride_px = 3.0;   ///< [px] along a chain between edgels that are lifted
   int sweep_views = 24;     ///< views that score the depths of an edgel
-  double match_px = 1.5;    ///< [px] largest distance of an edgel that supports a depth
-  double inlier_px = 1.0;   ///< [px] the same after the point was refined
-  double angle_deg = 12.0;  ///< [deg] largest angle of its plane to the tangent
   int min_views = 4;        ///< views that must agree
 };
 

@@ -10,6 +10,11 @@
 namespace sketchsplat {
 namespace {
 
+constexpr double kMergePx = 2;   // points of one curve nearer than this along it become one
+constexpr double kAsidePx = 1;   // largest offset across the tangent of points of one curve
+constexpr double kReachPx = 14;  // longest step from point to point
+constexpr double kBendDeg = 20;  // largest disagreement with the circle through both points
+
 KdTree tree_of(const std::vector<EdgePoint>& points) {
   Eigen::Matrix3Xd positions(3, points.size());
   for (size_t i = 0; i < points.size(); ++i) positions.col(i) = points[i].position;
@@ -18,11 +23,11 @@ KdTree tree_of(const std::vector<EdgePoint>& points) {
 
 // The neighbour that continues point i along side * tangent, or -1.
 int successor(const std::vector<EdgePoint>& points, const KdTree& neighbours, int i, int side,
-              double footprint, const LinkOptions& options) {
+              double footprint) {
   const EdgePoint& p = points[i];
   const Eigen::Vector3d t = p.tangent * side;
-  const double max_sine = std::sin(options.bend_deg * M_PI / 180);
-  const double reach = options.reach_px * footprint;
+  const double max_sine = std::sin(kBendDeg * M_PI / 180);
+  const double reach = kReachPx * footprint;
   int best = -1;
   double best_cost = 1e300;
   for (int j : neighbours.within(p.position, reach)) {
@@ -47,8 +52,7 @@ int successor(const std::vector<EdgePoint>& points, const KdTree& neighbours, in
 
 }  // namespace
 
-std::vector<EdgePoint> thin_points(const std::vector<EdgePoint>& points, double footprint,
-                                   const LinkOptions& options) {
+std::vector<EdgePoint> thin_points(const std::vector<EdgePoint>& points, double footprint) {
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -62,25 +66,24 @@ std::vector<EdgePoint> thin_points(const std::vector<EdgePoint>& points, double 
     if (gone[i]) continue;
     const EdgePoint& p = points[i];
     out.push_back(p);
-    for (int j : neighbours.within(p.position, options.merge_px * footprint)) {
+    for (int j : neighbours.within(p.position, kMergePx * footprint)) {
       const Eigen::Vector3d v = points[j].position - p.position;
       const double aside = (v - p.tangent * p.tangent.dot(v)).norm();
-      if (aside < options.aside_px * footprint && std::abs(p.tangent.dot(points[j].tangent)) > 0.9)
+      if (aside < kAsidePx * footprint && std::abs(p.tangent.dot(points[j].tangent)) > 0.9)
         gone[j] = true;
     }
   }
   return out;
 }
 
-std::vector<PointChain> link_points(const std::vector<EdgePoint>& points, double footprint,
-                                    const LinkOptions& options) {
+std::vector<PointChain> link_points(const std::vector<EdgePoint>& points, double footprint) {
   const int n = int(points.size());
   const KdTree neighbours = tree_of(points);
   std::vector<int> link[2];  // along +tangent, along -tangent
   for (int side = 0; side < 2; ++side) {
     link[side].resize(n);
     for (int i = 0; i < n; ++i)
-      link[side][i] = successor(points, neighbours, i, side == 0 ? 1 : -1, footprint, options);
+      link[side][i] = successor(points, neighbours, i, side == 0 ? 1 : -1, footprint);
   }
   // Which side of j looks back at i; -1 if the choice is not mutual.
   const auto side_back = [&](int j, int i) {

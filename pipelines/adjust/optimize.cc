@@ -12,6 +12,7 @@ namespace {
 
 // Where the loss of a long edge is least: its splats overlap, and what they let through falls
 // faster aside than their depth does. In widths of the edge maps, and optical.
+constexpr double kStepPx = 0.15;  // length of the first steps; falls to a tenth in a round
 constexpr double kWidth = 0.78, kDepth = 0.95;
 
 // Everything that descends, as one vector: nodes, handles, then per stroke the logarithm of the
@@ -129,7 +130,7 @@ OptimizeResult optimize(const Sketch& sketch, const EdgeWorld& world,
                   Eigen::VectorXd::Constant(strokes, kDepth)};
   Eigen::VectorXd x = to_vector(sketch.nodes, sketch.handles, drawing.width.array().log(),
                                 drawing.depth.array().log());
-  Eigen::VectorXd rate = Eigen::VectorXd::Constant(x.size(), options.step_px * world.footprint);
+  Eigen::VectorXd rate = Eigen::VectorXd::Constant(x.size(), kStepPx * world.footprint);
   rate.tail(2 * strokes).setConstant(0.05);
   Adam adam;
   for (int step = 0; step < options.steps && !options.deadline.passed(); ++step) {

@@ -19,7 +19,6 @@ Eigen::MatrixXf sample_visibility(const Observation& observation, int num_views,
 
 struct OptimizeOptions {
   int steps = 8;            ///< gradient steps per round; 0 leaves the sketch alone
-  double step_px = 0.15;    ///< [px] length of the first steps; falls to a tenth in a round
   double spacing_px = 2.0;  ///< [px] between splats
   double sigma_px = 1.0;    ///< [px] width of the edges in the edge maps
   bool visibility = true;   ///< draw nothing where a stroke is hidden

@@ -11,13 +11,11 @@ struct PolishOptions {
   int rounds = 6;               ///< of matching and least squares
   double spacing_px = 3.0;      ///< [px] between samples
   double reach_px = 1.5;        ///< [px] of a match in the first rounds
-  double final_reach_px = 1.0;  ///< [px] in the last ones, widened if the edgels scatter more
   double bias_px = 0.4;   ///< [px] a view that sees a stroke this far to one side sees another edge
   bool exclusive = true;  ///< an edgel belongs to the stroke that lies nearest to it
   double smooth_deg = 8;  ///< [deg] joints of cubics that turn less are smooth; 0: none
   double smooth_sigma_deg =
       0.2;                 ///< [deg] standard deviation of what is left between their tangents
-  double stop_px = 0.002;  ///< [px] no sample moved farther: done
   Deadline deadline;       ///< no second round after it
 };
 

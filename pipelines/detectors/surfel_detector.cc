@@ -119,7 +119,7 @@ class SurfelDetector : public Detector {
     });
     alpha_.clear();
     const CurvePoints tracks =
-        track_points(lift_edges(world_, {}), world_.footprint, {}, kFewestPoints);
+        track_points(lift_edges(world_, {}), world_.footprint, kFewestPoints);
     const std::vector<TrackSightings> sightings = track_sightings(world_, tracks, kEvery);
     const std::vector<std::vector<EdgelSupport>> support = support_of(sightings);
     const std::vector<EdgeKind> kinds = judge_tracks(tracks, sightings, support, kOffPx);
@@ -163,7 +163,7 @@ class SurfelDetector : public Detector {
     LiftOptions options;
     options.stride_px = 6, options.sweep_views = 16, options.min_views = 5;
     const CurvePoints tracks =
-        track_points(lift_edges(world_, options), world_.footprint, {}, SureEdgeOptions().run);
+        track_points(lift_edges(world_, options), world_.footprint, SureEdgeOptions().run);
     return sure_edges(world_, tracks);
   }
 

@@ -10,7 +10,6 @@
 
 #include "edges/tags/tag_square.h"
 #include "edges/views/lift.h"
-#include "edges/views/link.h"
 #include "edges/views/match.h"
 #include "pipelines/adjust/optimize.h"
 #include "pipelines/adjust/polish.h"
@@ -63,7 +62,6 @@ struct ReconstructOptions : DetectionOptions {
   std::string refine_poses = "auto";  ///< see refine_poses.h
   std::string solid = "auto";         ///< "off": none is looked for; "require": must be found
   LiftOptions lift;
-  LinkOptions link;
   SegmentOptions segment;
   SelectOptions select;
   ExtentOptions extent;

@@ -31,9 +31,9 @@ struct Round {
 
 Sketch initial_sketch(const std::vector<EdgePoint>& points, double footprint,
                       const ReconstructOptions& options) {
-  const std::vector<EdgePoint> thin = thin_points(points, footprint, options.link);
+  const std::vector<EdgePoint> thin = thin_points(points, footprint);
   Sketch sketch;
-  for (const PointChain& chain : link_points(thin, footprint, options.link)) {
+  for (const PointChain& chain : link_points(thin, footprint)) {
     Eigen::Matrix3Xd position(3, chain.points.size()), tangent(3, chain.points.size());
     for (size_t i = 0; i < chain.points.size(); ++i) {
       position.col(i) = thin[chain.points[i]].position;

@@ -13,6 +13,7 @@
 namespace sketchsplat {
 namespace {
 
+constexpr double kOutwardPx = 16;  // how far beyond a free end is looked
 constexpr int kWindow = 8;  // samples, one pixel apart, by which a view is known to see the stroke
 
 // Samples of one stroke from t_first on, `step` apart in t.
@@ -97,7 +98,7 @@ Sketch fit_extents(const Sketch& sketch, const EdgeWorld& world, const ExtentOpt
     const double length_px =
         is_closed(stroke.kind) ? 0 : stroke_length(sketch, s) / world.footprint;
     if (length_px >= options.min_length_px) {
-      const double reach = std::min(options.outward_px, most_growth(sketch, s) * length_px);
+      const double reach = std::min(kOutwardPx, most_growth(sketch, s) * length_px);
       const double before = degree[stroke.begin] == 1 ? reach : 0;
       const double after = degree[stroke.end] == 1 ? reach : 0;
       Run& run = runs[s];

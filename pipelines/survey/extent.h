@@ -9,7 +9,6 @@
 namespace sketchsplat {
 
 struct ExtentOptions {
-  double outward_px = 16.0;  ///< [px] how far beyond a free end is looked
   double share = 0.5;        ///< of the views that see the stroke up to here must see it here
   int min_views = 3;
   double gap_price = 0;        ///< times a gap's length must be seen beyond it; 0: it is an end

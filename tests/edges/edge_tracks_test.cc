@@ -203,10 +203,10 @@ TEST(TrackPoints, LinkPointsOfACurveAndLeaveLoneOnesOut) {
   }
   points.push_back(points.back());
   points.back().position = {0, 5, 0};
-  const CurvePoints tracks = track_points(points, 0.01, {}, 3);
+  const CurvePoints tracks = track_points(points, 0.01, 3);
   EXPECT_EQ(tracks.first, (std::vector<int>{0, 12}));
   EXPECT_LT(tracks.position.row(1).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_EQ(track_points(points, 0.01, {}, 13).position.cols(), 0);
+  EXPECT_EQ(track_points(points, 0.01, 13).position.cols(), 0);
 }
 
 }  // namespace

@@ -116,10 +116,10 @@ TEST(Lift, AContourThatMovesWithTheViewIsNotLiftedByManyViews) {
 
 TEST(Link, ACubeBecomesTwelveRunsOrFewer) {
   const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), cube_edges({0.1, 0.1, 0.1}, 0.8));
-  const std::vector<EdgePoint> thin = thin_points(lift_edges(w, {}), w.footprint, {});
+  const std::vector<EdgePoint> thin = thin_points(lift_edges(w, {}), w.footprint);
   size_t linked = 0;
   int long_runs = 0;
-  for (const PointChain& c : link_points(thin, w.footprint, {})) {
+  for (const PointChain& c : link_points(thin, w.footprint)) {
     linked += c.points.size();
     long_runs += c.points.size() >= 12;
   }
@@ -133,7 +133,7 @@ TEST(Link, ACircleIsOneClosedRun) {
       ideal_world(ring_of_views(20, kMiddle, 3),
                   {circle(kMiddle, Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0, 0.3, 0))});
   const std::vector<PointChain> chains =
-      link_points(thin_points(lift_edges(w, {}), w.footprint, {}), w.footprint, {});
+      link_points(thin_points(lift_edges(w, {}), w.footprint), w.footprint);
   ASSERT_FALSE(chains.empty());
   size_t longest = 0;
   for (size_t i = 1; i < chains.size(); ++i)
@@ -142,13 +142,13 @@ TEST(Link, ACircleIsOneClosedRun) {
 }
 
 TEST(Link, PointsInOnePlaceAndLonePointsDoNoHarm) {
-  EXPECT_TRUE(link_points({}, 1, {}).empty());
-  EXPECT_TRUE(thin_points({}, 1, {}).empty());
+  EXPECT_TRUE(link_points({}, 1).empty());
+  EXPECT_TRUE(thin_points({}, 1).empty());
   EdgePoint p;
   p.tangent = Eigen::Vector3d::UnitX();
-  EXPECT_TRUE(link_points({p}, 1, {}).empty());
-  EXPECT_EQ(thin_points({p, p, p}, 1, {}).size(), 1u);
-  EXPECT_TRUE(link_points({p, p}, 1, {}).empty());
+  EXPECT_TRUE(link_points({p}, 1).empty());
+  EXPECT_EQ(thin_points({p, p, p}, 1).size(), 1u);
+  EXPECT_TRUE(link_points({p, p}, 1).empty());
 }
 
 TEST(Match, QuadraticTellsTheOffsetOfALineAcrossIt) {

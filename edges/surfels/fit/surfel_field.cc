@@ -19,6 +19,11 @@ constexpr double kFirstLogit = 3.0;
 constexpr double kScale = 0.6;  // standard deviation of the first surfels, in their spacing
 constexpr double kMinAlpha = 0.05;
 constexpr int kNeighbours = 8;
+constexpr double kSmoothDeg = 20;     // turn between neighbours that is an edge
+constexpr double kMergeCosine = 0.9;  // of what two surfels do, from which on they are one
+constexpr int kHalvings = 1;          // of the pictures' sides at the start
+// [px] See SurfelOptions; a wider one swells outlines, so that faces sink.
+constexpr double kLowpassPx = 0.35;
 
 // Adam (Kingma and Ba, 2015) with a rate per row.
 struct Adam {
@@ -79,14 +84,14 @@ class Trainer {
     for (int level = 0; level < 3; ++level) {
       // The same smallest footprint in space at all levels: a wider one would bulge over the
       // outline, and surfaces sink to make up for it.
-      const int halvings = std::max(0, options_.halvings - level);
-      field_.drawing.lowpass_px = options_.lowpass_px * side / options_.side_px / (1 << halvings);
+      const int halvings = std::max(0, kHalvings - level);
+      field_.drawing.lowpass_px = kLowpassPx * side / options_.side_px / (1 << halvings);
       targets_ = make_targets(views_, std::max(16, side >> halvings), bounds_.center());
       if (level == 0) color_from_views();
       move_to_planes();
       run_level(std::max(1, int(share[level] * total)), total, level);
     }
-    field_.drawing.lowpass_px = options_.lowpass_px;
+    field_.drawing.lowpass_px = kLowpassPx;
     lay_on_shapes();
     return field_;
   }
@@ -269,14 +274,14 @@ class Trainer {
       const Eigen::Matrix3Xd center = sum.gradient.center;
       shade_backward(cloud, set.albedo(), field_.illumination, &sum.gradient, &by_albedo,
                      &by_light);
-      const double share = field_.evenness * options_.shading_pull;
+      const double share = field_.evenness;
       sum.gradient.rotation = rotation + share * (sum.gradient.rotation - rotation);
       sum.gradient.center = center + share * (sum.gradient.center - center);
       pull_albedo(batch, &by_albedo);
     }
     if (options_.smoothness > 0)
-      smooth_gradient(cloud, pairs_, field_.spacing, options_.smooth_angle_deg,
-                      batch * options_.smoothness, &sum.gradient);
+      smooth_gradient(cloud, pairs_, field_.spacing, kSmoothDeg, batch * options_.smoothness,
+                      &sum.gradient);
     adam_.step(SurfelSet::gradient(sum.gradient, by_albedo), rates(progress), &set.values);
     set.values.row(SurfelSet::kOpacity) = set.values.row(SurfelSet::kOpacity).cwiseMin(kMaxLogit);
     if (options_.shading) {
@@ -325,8 +330,7 @@ class Trainer {
   }
 
   void find_pairs() {
-    pairs_ = neighbour_pairs(field_.surfels, kNeighbours, 2.5 * field_.spacing,
-                             1.5 * options_.smooth_angle_deg);
+    pairs_ = neighbour_pairs(field_.surfels, kNeighbours, 2.5 * field_.spacing, 1.5 * kSmoothDeg);
   }
 
   void apply(const DensityChange& change) {
@@ -362,8 +366,7 @@ class Trainer {
       renderer.forward(facing_surfels(cloud, t.view.view, &facing), t.view.view, t.mask);
       influences[k] = spread_influence(renderer.influence(), facing, cloud.size());
     }
-    apply(merge_pairs(field_.surfels, pairs, influence_cosines(influences, pairs),
-                      options_.merge_cosine));
+    apply(merge_pairs(field_.surfels, pairs, influence_cosines(influences, pairs), kMergeCosine));
   }
 
   const std::vector<TrainingView>& views_;

@@ -29,14 +29,9 @@ struct SurfelFieldOptions {
   int renderings = 1200;    ///< of a view, forward and backward, at the most
   int side_px = 800;        ///< [px] longer side of the pictures at the end; a quarter of it first
   int pixels = 80000;       ///< of the object in a picture, mean: larger pictures are made smaller
-  int halvings = 1;         ///< of that side, in [0, 2], at the start
-  double lowpass_px = 0.35;  ///< see SurfelOptions; a wider one swells outlines, so that faces sink
   int batch = 2;            ///< views per step
   double common_albedo = 0.3;  ///< weight of the surfels' departure from one albedo
-  double shading_pull = 1;      ///< share of the shading gradient that reaches normals, [0, 1]
   double smoothness = 0.3;     ///< weight of neighbours' departure from a common plane
-  double smooth_angle_deg = 20;  ///< [deg] turn between neighbours that is an edge
-  double merge_cosine = 0.9;
   double mode_deg = 25;        ///< [deg] of what is one surface at a pixel, see render_geometry
   SurfelLossOptions loss;
   PhotoHullOptions hull;

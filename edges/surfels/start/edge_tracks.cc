@@ -47,13 +47,12 @@ bool runs_on(const Edgel& a, const Edgel& b) {
 
 }  // namespace
 
-CurvePoints track_points(const std::vector<EdgePoint>& points, double footprint,
-                         const LinkOptions& options, int min_points) {
-  const std::vector<EdgePoint> thin = thin_points(points, footprint, options);
+CurvePoints track_points(const std::vector<EdgePoint>& points, double footprint, int min_points) {
+  const std::vector<EdgePoint> thin = thin_points(points, footprint);
   std::vector<int> order;
   CurvePoints tracks;
   tracks.first = {0};
-  for (const PointChain& chain : link_points(thin, footprint, options)) {
+  for (const PointChain& chain : link_points(thin, footprint)) {
     if (int(chain.points.size()) < min_points) continue;
     order.insert(order.end(), chain.points.begin(), chain.points.end());
     tracks.first.push_back(int(order.size()));

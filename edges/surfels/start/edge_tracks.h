@@ -12,8 +12,7 @@ namespace sketchsplat {
 
 /// Points that continue one another in space: curve c of the result is a track. Lone points and
 /// tracks of fewer than `min_points` are left out.
-CurvePoints track_points(const std::vector<EdgePoint>& points, double footprint,
-                         const LinkOptions& options, int min_points);
+CurvePoints track_points(const std::vector<EdgePoint>& points, double footprint, int min_points);
 
 /// What an edgel, or a point of a track, is.
 enum class EdgeKind : std::uint8_t {
