@@ -5,8 +5,8 @@
 
 namespace sketchsplat {
 
-/// Adds --without, which leaves out terms of the fit of surfels by their names. Both options
-/// structs must outlive the fields. What is not named is as it was when the field was listed.
+/// Adds --without, which leaves out terms of the fit of surfels by their names; all others are as
+/// they were when the field was listed. `options` must outlive the fields.
 void list_without(DetectionOptions* options, Fields* fields);
 
 /// The same with the steps of the method, too.
