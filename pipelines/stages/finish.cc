@@ -14,6 +14,8 @@
 namespace sketchsplat {
 namespace {
 
+// Views that show a stroke so wide, see WidthShares.
+constexpr const char* kByWidth[] = {"views_narrow", "views_as_wide", "views_wide", "views_wider"};
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
 constexpr double kProbable = 0.5;  // of an edge that something else than its edgels tells of
 
@@ -204,9 +206,14 @@ void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
       if (sketch.evidence[s].confidence < kProbable) sketch.evidence[s] = unseen();
       sketch.evidence[s].confidence = implied[s];
     }
+  const Observation wide = observe_rounds(sketch, world, 0);
+  const RoundJudge rounds(world, wide, options.select.round);
   finished->features.clear();
   for (int s = 0; s < sketch.size(); ++s) {
     finished->features.push_back(features[s].named());
+    const std::array<int, 4> by_width = rounds.views_by_width(s, nullptr);
+    for (int k = 0; k < 4; ++k)
+      finished->features.back().push_back({kByWidth[k], double(by_width[k])});
     finished->features.back().push_back({"confidence", sketch.evidence[s].confidence});
   }
   finished->edgel_sigma_px = o.matches.sigma_px;

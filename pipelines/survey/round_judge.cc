@@ -26,6 +26,9 @@ constexpr double kTight = 0.5;      // of the least radius of a round: rounds th
 constexpr double kScatter = 0.11;   // of places about the best edge, over a round's radius
 constexpr double kSpread = 0.2;     // half of what a round moves by, over its radius
 constexpr double kSharpest = 0.75;  // quantile of strokes by how often they show as wide as most
+constexpr double kWidestRim = 100;  // over the least radius
+constexpr double kSame = 2;         // standard deviations of what is as wide as most
+constexpr double kWide = 4;         // the same of what is a little wider
 constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
 
 // Two normals of the curve at all samples of a stroke, which turn no more than it does.
@@ -76,6 +79,19 @@ double log_mean_exp(const std::vector<double>& x) {
   double mean = 0;
   for (const double v : x) mean += std::exp(v - most) / x.size();
   return most + std::log(mean);
+}
+
+constexpr int kSameClass = 1;
+int width_class(double sigmas) {
+  return sigmas < -kSame ? 0 : sigmas <= kSame ? kSameClass : sigmas <= kWide ? 2 : 3;
+}
+
+// The others keep their ratios.
+WidthShares with_share_of_same(WidthShares shares, double same) {
+  const double others = (1 - same) / (1 - shares[kSameClass]);
+  for (double& share : shares) share *= others;
+  shares[kSameClass] = same;
+  return shares;
 }
 
 }  // namespace
@@ -168,14 +184,15 @@ void RoundJudge::learn_rate(const std::vector<Sightings>& strokes) {
     int inner = 0, sharp = 0;
     for (const RoundSighting& v : seen) {
       inner += !v.outline;
-      sharp += !v.outline && std::abs(v.log_width - log_width_[v.view]) < 3 * width_sigma_;
+      sharp += !v.outline && std::abs(v.log_width - log_width_[v.view]) < kSame * width_sigma_;
     }
     if (inner >= kManyViews) shares.push_back(float(sharp) / float(inner));
   }
   if (shares.empty()) return;
-  const double rate = std::min<double>(model_.sharp, quantile(shares, kSharpest));
-  model_.round_sharp *= rate / model_.sharp;
-  model_.sharp = rate;
+  const double stated = model_.edge_widths[kSameClass];
+  const double rate = std::min<double>(stated, quantile(shares, kSharpest));
+  for (WidthShares* widths : {&model_.edge_widths, &model_.round_widths})
+    *widths = with_share_of_same(*widths, (*widths)[kSameClass] * rate / stated);
 }
 
 // Likelihood of a place that should be 0, over that of one anywhere in reach.
@@ -198,10 +215,11 @@ double RoundJudge::places_of_edge(const Sightings& seen) const {
     return sum;
   };
   Vector2d shift = Vector2d::Zero();
+  Eigen::Matrix2d H;  // times the variance
   for (int k = 0; k < kFits; ++k) {
     // Wide at first: the stroke may lie beside all of them.
     const double sigma = k < kFits / 2 ? 3 * sigma_ : sigma_;
-    Eigen::Matrix2d H = Eigen::Matrix2d::Identity() * std::pow(sigma_ / slack, 2);
+    H = Eigen::Matrix2d::Identity() * std::pow(sigma_ / slack, 2);
     Vector2d g = Vector2d::Zero();
     for (const RoundSighting& v : seen) {
       const Vector2d row = v.row.head<2>();
@@ -211,8 +229,8 @@ double RoundJudge::places_of_edge(const Sightings& seen) const {
     shift = H.ldlt().solve(g);
     if (!shift.allFinite()) return nats_at(Vector2d::Zero(), sigma_);
   }
-  // What it costs to say where, among the places that could be told apart.
-  const double occam = 2 * std::log(std::max(1.0, slack * std::sqrt(double(seen.size())) / sigma_));
+  // Of the places where it may be, those that agree with the views are a part (Laplace).
+  const double occam = 2 * std::log(slack / sigma_) + 0.5 * std::log(H.determinant());
   const double tight = std::hypot(sigma_, kScatter * kTight * model_.least_radius_px);
   std::vector<double> sums;
   for (const double sigma : {sigma_, tight})
@@ -234,62 +252,49 @@ double RoundJudge::places_of_band(const Sightings& seen) const {
   return sums.empty() ? -INFINITY : log_mean_exp(sums);
 }
 
-// The outlines touch a cylinder: its axis, relative to the stroke, and its radius, from a first
-// one.
-Vector3d RoundJudge::fit_rim(const Sightings& seen, double radius_px) const {
-  const bool masks = !world_.hull.empty();
-  Vector3d x(0, 0, radius_px);
-  for (int k = 0; k < kFits; ++k) {
-    const bool free = k > 1;  // the radius; the axis comes first
-    const double sigma = k < kFits / 2 ? 6 * sigma_ : sigma_;
-    Matrix3d H = 1e-4 * Matrix3d::Identity();
-    Vector3d g = Vector3d::Zero();
-    for (const RoundSighting& v : seen) {
-      if (masks && !v.outline) continue;
-      const double r = (v.place_px - v.row.dot(x)) / sigma;
-      const double w = k == 0 ? 1 : std::exp(-0.5 * r * r);
-      const Vector3d row = free ? v.row : Vector3d(v.row.x(), v.row.y(), 0);
-      H += w * row * row.transpose();
-      g += w * row * (v.place_px - (free ? 0 : v.row.z() * radius_px));
-    }
-    const Vector3d next = H.ldlt().solve(g);
-    if (!next.allFinite()) return Vector3d::Zero();
-    x = free ? next : Vector3d(next.x(), next.y(), radius_px);
-  }
-  return x;
-}
-
 double RoundJudge::places_of_rim(const Sightings& seen) const {
-  constexpr double kPrice = 9;  // [nat] of its parameters
+  const double widest = std::log(kWidestRim), slack = kRoot2Pi * model_.slack_px;
   double best = -INFINITY;
   const bool masks = !world_.hull.empty();
   for (const double times : {1.0, 3.0, 9.0, -1.0, -3.0, -9.0}) {
     if (masks && times < 0) break;  // the object is the brighter side of its outline
-    const Vector3d rim = fit_rim(seen, times * model_.least_radius_px);
-    if (!(rim.z() * (times > 0 ? 1 : -1) >= model_.least_radius_px)) continue;
-    double sum = -kPrice;
+    const RimFit rim = fit_rim(seen, times * model_.least_radius_px);
+    const double radius = rim.x.z() * (times > 0 ? 1 : -1);
+    if (!(radius >= model_.least_radius_px)) continue;
+    // Radii are as likely by their logarithm; the stroke is on the round, all around alike. Of all
+    // that, what agrees with the views is a part (Laplace), which is no larger than the round.
+    const Matrix3d precision = rim.precision + Matrix3d::Identity() / (radius * radius);
+    double sum = -std::log(widest * radius) - std::log(2 * M_PI * radius * slack) +
+                 3 * std::log(kRoot2Pi) - 0.5 * std::log(precision.determinant());
     for (const RoundSighting& v : seen)
-      if (!masks || v.outline) sum += std::log(near(v.place_px - v.row.dot(rim)));
+      if (!masks || v.outline) sum += std::log(near(v.place_px - v.row.dot(rim.x)));
     best = std::max(best, sum);
   }
   return best;
 }
 
+std::array<int, 4> RoundJudge::by_width(const Sightings& seen) const {
+  std::array<int, 4> counts = {};
+  if (!(width_sigma_ > 0)) return counts;
+  for (const RoundSighting& v : seen)
+    if (!v.outline) ++counts[width_class((v.log_width - log_width_[v.view]) / width_sigma_)];
+  return counts;
+}
+
+std::array<int, 4> RoundJudge::views_by_width(int stroke, const EdgelFlags* others) const {
+  return by_width(round_sightings(world_, wide_, stroke, others));
+}
+
 double RoundJudge::widths_of_round(const Sightings& seen) const {
-  if (!(width_sigma_ > 0)) return 0;
-  constexpr double kBroad = 1.4;  // range of the logarithm of the width of what is no edge
   // Outlines are sharp whatever they are of, and without masks nobody knows them.
   constexpr double kOutlines = 0.5;
-  const double outlines = world_.hull.empty() ? kOutlines : 0;
-  const double as_sharp = outlines + (1 - outlines) * model_.round_sharp;
+  WidthShares round = model_.round_widths;
+  if (world_.hull.empty())
+    round = with_share_of_same(round, kOutlines + (1 - kOutlines) * round[kSameClass]);
+  const std::array<int, 4> views = by_width(seen);
   double sum = 0;
-  for (const RoundSighting& v : seen) {
-    if (v.outline) continue;
-    const double r = (v.log_width - log_width_[v.view]) / width_sigma_;
-    const double peak = std::exp(-0.5 * r * r) / (width_sigma_ * kRoot2Pi);
-    sum += std::log((as_sharp * peak + (1 - as_sharp) / kBroad) /
-                    (model_.sharp * peak + (1 - model_.sharp) / kBroad));
-  }
+  for (size_t k = 0; k < views.size(); ++k)
+    sum += views[k] * std::log(round[k] / model_.edge_widths[k]);
   return sum;
 }
 

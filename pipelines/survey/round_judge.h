@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "edges/views/unexplained.h"
@@ -9,14 +10,18 @@
 
 namespace sketchsplat {
 
-/// How edges and rounds (fillets, bends, round corners) show. Set by hand on strokes of synthetic
-/// parts.
+/// Shares of the views that show a stroke narrower than most edges, as wide as these, wider, or
+/// much wider.
+using WidthShares = std::array<double, 4>;
+
+/// How edges and rounds (fillets, bends, round corners) show. Widths as estimated by
+/// eval/calibrate_likelihood.py, the rest set by hand, on strokes of synthetic parts.
 struct RoundModel {
-  double least_radius_px = 2;       ///< [px] rounds of a smaller radius are edges
-  double least_radius = 0;          ///< [world units] the same; 0: least_radius_px tells
-  double accident = 0.15;           ///< views in which something else lies beside a stroke
-  double sharp = 0.9;               ///< views in which an edge is as wide as edges are here
-  double round_sharp = 0.3;         ///< the same of a round
+  double least_radius_px = 2;  ///< [px] rounds of a smaller radius are edges
+  double least_radius = 0;     ///< [world units] the same; 0: least_radius_px tells
+  double accident = 0.15;      ///< views in which something else lies beside a stroke
+  WidthShares edge_widths = {0.100, 0.825, 0.045, 0.030};
+  WidthShares round_widths = {0.190, 0.265, 0.115, 0.430};
   double least_sigma_px = 0.05;     ///< [px] standard deviation of an edge's median place in a view
   double least_width_sigma = 0.03;  ///< of the logarithm of the median width in a view
   double slack_px = 0.3;            ///< [px] standard deviation of a stroke about its edge
@@ -52,6 +57,16 @@ class RoundJudge {
   /// `others`' (per view and edgel; may be null). Views are independent witnesses. 0 without views.
   double nats(int stroke, const EdgelFlags* others) const;
 
+  /// Radius of a round [px] with its standard deviation, and the views whose outlines tell it.
+  struct Radius {
+    double px = 0, sigma_px = 0;  // 0: nothing tells
+    int views = 0;
+  };
+  /// Of the cylinder that lines of sight touch where a stroke runs, in more than three views.
+  Radius radius(int stroke, const EdgelFlags* others) const;
+  /// Views that show a stroke as each of WidthShares, outlines left out.
+  std::array<int, 4> views_by_width(int stroke, const EdgelFlags* others) const;
+
   double sigma_px() const { return sigma_; }
   /// Logarithm of the width of sharp edges in a view [px]: its blur, and that of the detector.
   double log_width(int view) const { return log_width_[view]; }
@@ -59,8 +74,13 @@ class RoundJudge {
  private:
   double places_of_edge(const std::vector<RoundSighting>& seen) const;
   double places_of_band(const std::vector<RoundSighting>& seen) const;
-  Eigen::Vector3d fit_rim(const std::vector<RoundSighting>& seen, double radius_px) const;
+  struct RimFit {
+    Eigen::Vector3d x;          // [px] axis, relative to the stroke, and radius
+    Eigen::Matrix3d precision;  // [1 / px^2]
+  };
+  RimFit fit_rim(const std::vector<RoundSighting>& seen, double radius_px) const;
   double places_of_rim(const std::vector<RoundSighting>& seen) const;
+  std::array<int, 4> by_width(const std::vector<RoundSighting>& seen) const;
   double widths_of_round(const std::vector<RoundSighting>& seen) const;
   double near(double off_px) const;
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "pipelines/survey/select.h"
 #include "tests/support/strokes.h"
 
@@ -142,6 +145,23 @@ TEST(RoundJudge, WhatCountsAsRoundIsAnOptionInPixelsAndInUnits) {
   EXPECT_EQ(s.nats(model), -INFINITY);
   model.least_radius = 2 * s.world.footprint;
   EXPECT_DOUBLE_EQ(s.nats(model), s.nats());
+}
+
+TEST(RoundJudge, ANarrowEdgeIsLessOfARoundThanAWideOneAndViewsByWidthSayWhy) {
+  const Scene same(0), narrow(0, 0.85f), wide(0, 1.09f), wider(0, 1.2f);
+  EXPECT_LT(same.nats(), narrow.nats());
+  EXPECT_LT(narrow.nats(), wider.nats());
+  EXPECT_LT(same.nats(), wide.nats());
+  EXPECT_LT(wide.nats(), wider.nats());
+  int kind = 0;
+  for (const Scene* s : {&narrow, &same, &wide, &wider}) {
+    const Observation o = observe_rounds(s->sketch, s->world, 0);
+    const std::array<int, 4> views =
+        RoundJudge(s->world, o, {}).views_by_width(s->rounded, nullptr);
+    EXPECT_GT(views[kind], 10) << kind;
+    EXPECT_EQ(std::count(views.begin(), views.end(), 0), 3) << kind;
+    ++kind;
+  }
 }
 
 TEST(Select, ARoundIsLeftOutAndTheSameEdgeSharpIsKept) {
