@@ -82,6 +82,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   rename_doubtful(leave_out_unsure(options.min_confidence, &finished), &solid);
   const Sketch proposed = propose_hidden(finished.sketch, world, &report);
   report_sketch(finished, world, &report);
+  const Blends blends = options.blends ? find_blends(finished.sketch, world, options) : Blends();
   return {finished.sketch,
           report,
           proposed,
@@ -89,7 +90,8 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
           posed.refined ? at_full_size(world.views, small, scene) : std::vector<View>(),
           tags,
           solid,
-          snaps_by_curve(finished)};
+          snaps_by_curve(finished),
+          blends};
 }
 
 Reconstruction reconstruct(const Scene& scene, const ReconstructOptions& options,

@@ -3,6 +3,7 @@
 
 #include "datasets/readers/scene.h"
 #include "edges/tags/tag_square.h"
+#include "pipelines/stages/blends.h"
 #include "pipelines/base/run_report.h"
 #include "pipelines/stages/options.h"
 #include "pipelines/stages/stages.h"
@@ -21,6 +22,7 @@ struct Reconstruction {
   std::vector<TagSquare> tags;     ///< that were asked for
   SolidSearch solid;               ///< what the strokes bound, or why there is none
   SnapOutcome snap;                ///< lengths that were made standard ones
+  Blends blends;                   ///< rounded edges, if they were asked for; no part of the sketch
 };
 
 /// The edges of the object in the scene, at least one. Throws TooLittleError if there is none,

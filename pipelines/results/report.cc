@@ -19,6 +19,8 @@
 namespace sketchsplat {
 namespace {
 
+constexpr int kBlendPoints = 32;  // along a blend, of the points that are listed
+
 using Json = nlohmann::ordered_json;
 
 // Names from files may hold bytes that are no UTF-8: shown as U+FFFD rather than refused.
@@ -156,6 +158,26 @@ Json faces_json(const SolidOutcome* solid, const Extent& extent) {
   return faces.dump().size() > kMostBytes ? Json::array() : faces;
 }
 
+Json blends_json(const Blends& blends) {
+  Json out = Json::array();
+  for (size_t b = 0; b < blends.blends.size(); ++b) {
+    const Blend& blend = blends.blends[b];
+    const double length = stroke_length(blends.curves, int(b));
+    const Eigen::Matrix3Xd points =
+        sample_stroke(blends.curves, int(b), std::max(1e-12, length / kBlendPoints));
+    Json along = Json::array();
+    for (int i = 0; i < points.cols(); ++i)
+      along.push_back({points(0, i), points(1, i), points(2, i)});
+    out.push_back({{"kind", kind_name(blends.curves.strokes[b].kind)},
+                   {"radius", blend.radius > 0 ? Json(blend.radius) : Json()},
+                   {"sigma", blend.radius > 0 ? Json(blend.sigma) : Json()},
+                   {"views", blend.views},
+                   {"length", length},
+                   {"along", along}});
+  }
+  return out;
+}
+
 }  // namespace
 
 Extent sketch_extent(const Sketch& sketch) {
@@ -195,6 +217,8 @@ std::string report_json(const ReportInput& input) {
   json["rounds"] = rounds;
   json["strokes"] = Json::array();
   for (const Numbers& stroke : run.strokes) json["strokes"].push_back(object_of(stroke));
+  if (!input.reconstruction->blends.blends.empty())
+    json["blends"] = blends_json(input.reconstruction->blends);
   json["warnings"] = run.warnings;
   json["options"] = Json::parse(input.options_json);
   return dump(json, 2) + "\n";

@@ -199,6 +199,9 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_strokes(o, f);
   list_rounds(o, f);
   f->group("Output");
+  f->add("blends", &o->blends, "List rounded edges with their radii in report.json, too");
+  f->add("largest-blend", &o->blend_px, "px", 1, 1e6, "Radius of what is no rounded edge any more")
+      .expert = true;
   f->add("min-confidence", &o->min_confidence, "", 0, 1,
          "Strokes that are less probably edges are left out");
   list_region(o, f);

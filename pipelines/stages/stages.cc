@@ -204,16 +204,25 @@ EdgeWorld rest_of(const EdgeWorld& world, const Sketch& sketch) {
   return unexplained(world, explained, kShortestRest);
 }
 
-// The sketch with what the rest of the edgels add to it.
-Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
-                RunReport* report, Progress* progress) {
-  Stage stage("again", 0, report, progress);
+}  // namespace
+
+Sketch strokes_of_rest(const Sketch& sketch, const EdgeWorld& world,
+                       const ReconstructOptions& options) {
   const EdgeWorld rest = rest_of(world, sketch);
   LiftOptions lift = options.lift;
   lift.min_views = std::min(lift.min_views, kSecondViews);
   const Sketch first =
       polish(initial_sketch(lift_edges(rest, lift), rest.footprint, options), rest, early(options));
-  const Sketch more = rewritten(grown(first, rest, options), rest, options).sketch;
+  return rewritten(grown(first, rest, options), rest, options).sketch;
+}
+
+namespace {
+
+// The sketch with what the rest of the edgels add to it.
+Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
+                RunReport* report, Progress* progress) {
+  Stage stage("again", 0, report, progress);
+  const Sketch more = strokes_of_rest(sketch, world, options);
   Sketch both = sketch;
   append_strokes(more, &both);
   const Selection chosen = select_strokes(both, world, select_options(options));

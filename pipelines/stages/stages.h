@@ -49,8 +49,13 @@ Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& 
 Sketch run_rounds(Sketch sketch, const EdgeWorld& world, const std::vector<EdgeTarget>& targets,
                   const ReconstructOptions& options, RunReport* report, Progress* progress);
 
-/// A second look, at the edgels that no stroke explains. They are few, so fewer views need to agree
-/// on a point, and nothing pulls at what they show. Strokes that come of it are chosen among the
+/// Strokes of the edgels that no stroke of `sketch` explains, not chosen yet. They are few, so that
+/// fewer views need to agree on a point.
+Sketch strokes_of_rest(const Sketch& sketch, const EdgeWorld& world,
+                       const ReconstructOptions& options);
+
+/// A second look, at the edgels that no stroke explains (strokes_of_rest): nothing pulls at
+/// what they show. Strokes that come of it are chosen among the
 /// others as all are; if one was, one more round follows.
 Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
                   const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
