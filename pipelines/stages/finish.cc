@@ -14,7 +14,7 @@
 namespace sketchsplat {
 namespace {
 
-// Views that show a stroke so wide, see WidthShares.
+// Views that show a stroke so wide, see WidthRates.
 constexpr const char* kByWidth[] = {"views_narrow", "views_as_wide", "views_wide", "views_wider"};
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
 constexpr double kProbable = 0.5;  // of an edge that something else than its edgels tells of

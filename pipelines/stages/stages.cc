@@ -98,6 +98,7 @@ Round rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 }
 
 constexpr double kNoRound = 1e6;  // [px] as --least-round
+constexpr const char* kOddsOfRound = "odds_of_round";
 
 }  // namespace
 
@@ -120,6 +121,7 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
   const Sketch first =
       polish(initial_sketch(points, world.footprint, options), world, early(options));
   const Selection selection = select_strokes(first, world, select_options(options));
+  report->counts.push_back({kOddsOfRound, selection.round_odds});
   note_verdicts(first, selection, progress);
   const Sketch& chosen = selection.sketch;
   report->counts.push_back({"strokes_lifted", double(first.size())});
@@ -156,6 +158,14 @@ Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& 
 
 namespace {
 
+// As the first strokes had it, of which rounds had not been left out yet.
+SelectOptions later(const RunReport& report, const ReconstructOptions& options) {
+  SelectOptions select = select_options(options);
+  for (const auto& [name, value] : report.counts)
+    if (name == kOddsOfRound) select.round_odds = value;
+  return select;
+}
+
 Round run_round(const Sketch& sketch, const EdgeWorld& world,
                 const std::vector<EdgeTarget>& targets, const ReconstructOptions& options,
                 RunReport* report, Progress* progress) {
@@ -170,7 +180,7 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
     const Simplified simpler = simpler_graph(moved.sketch, world, options);
     for (const auto& [name, count] : simpler.counts.named()) row.push_back({name, double(count)});
     const Round written = rewritten(grown(simpler.sketch, world, options), world, options);
-    const Selection chosen = select_strokes(written.sketch, world, select_options(options));
+    const Selection chosen = select_strokes(written.sketch, world, later(*report, options));
     note_verdicts(written.sketch, chosen, progress);
     row.push_back({"unexplaining", double(chosen.changes)});
     round.changed = simpler.counts.total() > 0 || written.changed || chosen.changes > 0;
@@ -225,7 +235,7 @@ Round with_rest(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
   const Sketch more = strokes_of_rest(sketch, world, options);
   Sketch both = sketch;
   append_strokes(more, &both);
-  const Selection chosen = select_strokes(both, world, select_options(options));
+  const Selection chosen = select_strokes(both, world, later(*report, options));
   std::vector<bool> keep(both.size(), true);
   int added = 0;
   for (int i = sketch.size(); i < both.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "datasets/types/median.h"
 
@@ -86,12 +87,24 @@ int width_class(double sigmas) {
   return sigmas < -kSame ? 0 : sigmas <= kSame ? kSameClass : sigmas <= kWide ? 2 : 3;
 }
 
-// The others keep their ratios.
-WidthShares with_share_of_same(WidthShares shares, double same) {
-  const double others = (1 - same) / (1 - shares[kSameClass]);
-  for (double& share : shares) share *= others;
-  shares[kSameClass] = same;
-  return shares;
+double total(const WidthRates& rates) { return std::accumulate(rates.begin(), rates.end(), 0.0); }
+
+double share_of_same(const WidthRates& rates) { return rates[kSameClass] / total(rates); }
+
+// The others keep their ratios, and all together their sum.
+WidthRates with_share_of_same(WidthRates rates, double same) {
+  const double sum = total(rates), others = (1 - same) / (1 - share_of_same(rates));
+  for (double& rate : rates) rate *= others;
+  rates[kSameClass] = same * sum;
+  return rates;
+}
+
+// [nat] Dirichlet-multinomial distribution, but for what depends on the views alone.
+double log_likelihood(const WidthRates& rates, const std::array<int, 4>& views) {
+  const auto rising = [](double a, double n) { return std::lgamma(a + n) - std::lgamma(a); };
+  double sum = -rising(total(rates), std::accumulate(views.begin(), views.end(), 0));
+  for (size_t k = 0; k < views.size(); ++k) sum += rising(rates[k], views[k]);
+  return sum;
 }
 
 }  // namespace
@@ -189,10 +202,10 @@ void RoundJudge::learn_rate(const std::vector<Sightings>& strokes) {
     if (inner >= kManyViews) shares.push_back(float(sharp) / float(inner));
   }
   if (shares.empty()) return;
-  const double stated = model_.edge_widths[kSameClass];
+  const double stated = share_of_same(model_.edge_widths);
   const double rate = std::min<double>(stated, quantile(shares, kSharpest));
-  for (WidthShares* widths : {&model_.edge_widths, &model_.round_widths})
-    *widths = with_share_of_same(*widths, (*widths)[kSameClass] * rate / stated);
+  for (WidthRates* widths : {&model_.edge_widths, &model_.round_widths})
+    *widths = with_share_of_same(*widths, share_of_same(*widths) * rate / stated);
 }
 
 // Likelihood of a place that should be 0, over that of one anywhere in reach.
@@ -288,14 +301,11 @@ std::array<int, 4> RoundJudge::views_by_width(int stroke, const EdgelFlags* othe
 double RoundJudge::widths_of_round(const Sightings& seen) const {
   // Outlines are sharp whatever they are of, and without masks nobody knows them.
   constexpr double kOutlines = 0.5;
-  WidthShares round = model_.round_widths;
+  WidthRates round = model_.round_widths;
   if (world_.hull.empty())
-    round = with_share_of_same(round, kOutlines + (1 - kOutlines) * round[kSameClass]);
+    round = with_share_of_same(round, kOutlines + (1 - kOutlines) * share_of_same(round));
   const std::array<int, 4> views = by_width(seen);
-  double sum = 0;
-  for (size_t k = 0; k < views.size(); ++k)
-    sum += views[k] * std::log(round[k] / model_.edge_widths[k]);
-  return sum;
+  return log_likelihood(round, views) - log_likelihood(model_.edge_widths, views);
 }
 
 double RoundJudge::nats(int stroke, const EdgelFlags* others) const {
@@ -303,7 +313,19 @@ double RoundJudge::nats(int stroke, const EdgelFlags* others) const {
   if (seen.empty()) return 0;
   const double rounds = log_mean_exp({places_of_band(seen), places_of_rim(seen)});
   if (rounds == -INFINITY) return rounds;  // no round shows so near
-  return rounds - places_of_edge(seen) + widths_of_round(seen);
+  return model_.witnesses * (rounds - places_of_edge(seen)) + widths_of_round(seen);
+}
+
+double odds_of_round(const std::vector<double>& nats) {
+  constexpr double kRounds = 0.5, kEdges = 1;  // known beforehand
+  constexpr int kRepeats = 50;                 // of expectation and maximization
+  double odds = kRounds / kEdges;
+  for (int k = 0; k < kRepeats; ++k) {
+    double rounds = kRounds;
+    for (const double n : nats) rounds += 1 / (1 + std::exp(-n) / odds);
+    odds = rounds / (kRounds + kEdges + double(nats.size()) - rounds);
+  }
+  return odds;
 }
 
 }  // namespace sketchsplat

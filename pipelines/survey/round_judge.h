@@ -10,18 +10,21 @@
 
 namespace sketchsplat {
 
-/// Shares of the views that show a stroke narrower than most edges, as wide as these, wider, or
-/// much wider.
-using WidthShares = std::array<double, 4>;
+/// How often views show a stroke narrower than most edges, as wide as these, wider, or much wider:
+/// parameters of a Dirichlet distribution of the four rates. What makes one edge wide in one view
+/// (a curved face beside it, another edge) does so in many: its views are no independent witnesses.
+using WidthRates = std::array<double, 4>;
 
-/// How edges and rounds (fillets, bends, round corners) show. Widths as estimated by
-/// eval/calibrate_likelihood.py, the rest set by hand, on strokes of synthetic parts.
+/// How edges and rounds (fillets, bends, round corners) show: the likeliest parameters of widths on
+/// candidate strokes of synthetic parts (eval/calibrate_likelihood.py estimates them on those that
+/// are drawn), the rest set by hand on such strokes.
 struct RoundModel {
   double least_radius_px = 2;  ///< [px] rounds of a smaller radius are edges
   double least_radius = 0;     ///< [world units] the same; 0: least_radius_px tells
   double accident = 0.15;      ///< views in which something else lies beside a stroke
-  WidthShares edge_widths = {0.100, 0.825, 0.045, 0.030};
-  WidthShares round_widths = {0.190, 0.265, 0.115, 0.430};
+  double witnesses = 0.4;      ///< of a view, as to where strokes lie: neighbours see alike
+  WidthRates edge_widths = {1.11, 8.61, 0.60, 0.52};
+  WidthRates round_widths = {0.78, 0.51, 0.29, 0.78};
   double least_sigma_px = 0.05;     ///< [px] standard deviation of an edge's median place in a view
   double least_width_sigma = 0.03;  ///< of the logarithm of the median width in a view
   double slack_px = 0.3;            ///< [px] standard deviation of a stroke about its edge
@@ -54,7 +57,7 @@ class RoundJudge {
   RoundJudge(const EdgeWorld& world, const Observation& wide, const RoundModel& model);
 
   /// Logarithm of the likelihood ratio [nat] of a round and of an edge, without the edgels that are
-  /// `others`' (per view and edgel; may be null). Views are independent witnesses. 0 without views.
+  /// `others`' (per view and edgel; may be null). 0 without views.
   double nats(int stroke, const EdgelFlags* others) const;
 
   /// Radius of a round [px] with its standard deviation, and the views whose outlines tell it.
@@ -64,7 +67,7 @@ class RoundJudge {
   };
   /// Of the cylinder that lines of sight touch where a stroke runs, in more than three views.
   Radius radius(int stroke, const EdgelFlags* others) const;
-  /// Views that show a stroke as each of WidthShares, outlines left out.
+  /// Views that show a stroke as each of WidthRates, outlines left out.
   std::array<int, 4> views_by_width(int stroke, const EdgelFlags* others) const;
 
   double sigma_px() const { return sigma_; }
@@ -94,6 +97,11 @@ class RoundJudge {
   std::vector<double> log_width_;  // per view
   double width_sigma_ = 0;         // 0: nothing tells how wide edges are
 };
+
+/// Odds of a round rather than an edge before a stroke is looked at, from the likelihood ratios
+/// [nat] of all strokes of a scene: where all others are sharp, this one hardly is a round
+/// (empirical Bayes). The most probable ones; without strokes one in three is a round.
+double odds_of_round(const std::vector<double>& nats);
 
 /// What the views show along a stroke that show enough of it.
 std::vector<RoundSighting> round_sightings(const EdgeWorld& world, const Observation& wide,

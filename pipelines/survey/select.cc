@@ -92,12 +92,26 @@ double reach_of_edgels(const Sketch& sketch, const EdgeWorld& world, MatchOption
   return std::clamp(3 * scatter_px(world, wide), kLeast, kMost);
 }
 
+// As all strokes have it that are more than nothing, and no rims.
+double odds_in_scene(const StrokeObservation& o, const StrokeJudge& judge, const RoundJudge& rounds,
+                     const std::vector<char>& rim, const SelectOptions& options) {
+  const int n = int(o.strokes.size());
+  std::vector<double> nats(n, NAN);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < n; ++i)
+    if (!rim[i] && o.strokes[i].length_px >= options.min_length_px &&
+        judge.nats(i, nullptr) > options.least_nats)
+      nats[i] = rounds.nats(i, nullptr);
+  nats.erase(std::remove_if(nats.begin(), nats.end(), [](double x) { return std::isnan(x); }),
+             nats.end());
+  return odds_of_round(nats);
+}
+
 }  // namespace
 
-double edge_nats(double nothing, double round) {
-  constexpr double kRounds = 0.5;
+double edge_nats(double nothing, double round, double round_odds) {
   const double least = std::min(nothing, round);
-  return least - std::log(std::exp(least - nothing) + kRounds * std::exp(least - round));
+  return least - std::log(std::exp(least - nothing) + round_odds * std::exp(least - round));
 }
 
 const char* verdict_name(Verdict verdict) {
@@ -142,6 +156,8 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
   };
   const auto known = [&](int i) { return !options.prior.empty() && !std::isnan(options.prior[i]); };
   const std::vector<char> round = explain_rims(o, world, options, &owned);
+  result.round_odds =
+      options.round_odds > 0 ? options.round_odds : odds_in_scene(o, judge, rounds, round, options);
   explained = owned;
   for (int i : order) {
     Verdict& verdict = result.verdicts[i];
@@ -149,10 +165,10 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
       result.stats[i] = summarise(world, o, i, options.min_views, &others);
       const double edge = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
       const double no_round = -rounds.nats(i, &others);
-      result.nats[i] = edge_nats(edge, no_round);
-      verdict = result.nats[i] > options.least_nats ? Verdict::kKept
-                : edge > no_round                   ? Verdict::kRound
-                                                    : Verdict::kUnlikely;
+      result.nats[i] = edge_nats(edge, no_round, result.round_odds);
+      verdict = result.nats[i] > options.least_nats             ? Verdict::kKept
+                : edge > no_round - std::log(result.round_odds) ? Verdict::kRound
+                                                                : Verdict::kUnlikely;
     };
     if (o.strokes[i].length_px < options.min_length_px) verdict = Verdict::kShort;
     if (round[i]) verdict = Verdict::kRound;

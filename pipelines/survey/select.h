@@ -18,6 +18,9 @@ struct SelectOptions {
   double place_sigma_px = 0.2;  ///< [px] see place_sigma_px
   EvidenceModel evidence;
   RoundModel round;
+  /// Of a round rather than an edge beforehand; 0: as these strokes have it (odds_of_round). To be
+  /// told where rounds have been left out already: what is left holds fewer than the scene does.
+  double round_odds = 0;
   /// [nat] log prior odds of strokes that are known from elsewhere, one per stroke, NaN: none. They
   /// add to the likelihood; neither their number of views nor their price counts, which those paid
   /// for who knew them first. Empty: of no stroke.
@@ -35,11 +38,12 @@ enum class Verdict {
 const char* verdict_name(Verdict verdict);
 
 /// [nat] Logarithm of the odds of an edge, from its likelihood ratios [nat] to nothing and to a
-/// round. Nothing is beforehand as likely as an edge, as if there were no rounds; a round half as
-/// likely, so that a stroke stays where nothing tells whether it is one.
-double edge_nats(double nothing, double round);
+/// round. Nothing is beforehand as likely as an edge, as if there were no rounds; a round
+/// `round_odds` times as likely (odds_of_round).
+double edge_nats(double nothing, double round, double round_odds);
 
 struct Selection : PassResult {
+  double round_odds = 0;           ///< that were used
   std::vector<Verdict> verdicts;   ///< one per stroke that came in
   std::vector<StrokeStats> stats;  ///< what the verdicts rest on
   std::vector<double> nats;        ///< of what no better stroke explains, and of the prior

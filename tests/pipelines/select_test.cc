@@ -40,18 +40,19 @@ TEST(Select, TrueEdgesAreKept) {
     EXPECT_EQ(s.remap.stroke[i], i);
     EXPECT_GT(s.stats[i].cover, 0.9);
     EXPECT_LT(s.stats[i].rms_px, 0.1);
-    EXPECT_GT(s.nats[i], 20);
+    EXPECT_GT(s.nats[i], 10);
   }
 }
 
 TEST(Select, WhatIsSurelyNoRoundIsNoMoreAnEdgeForIt) {
   constexpr double kSure = 1000;
   for (const double nats : {-5.0, -0.5, 0.5, 30.0}) {
-    EXPECT_NEAR(edge_nats(nats, kSure), nats, 1e-9);
-    EXPECT_LT(edge_nats(nats, 0), nats);
+    EXPECT_NEAR(edge_nats(nats, kSure, 0.5), nats, 1e-9);
+    EXPECT_LT(edge_nats(nats, 0, 0.5), nats);
   }
-  EXPECT_GT(edge_nats(kSure, 0), 0) << "where nothing tells whether it is a round";
-  EXPECT_LT(edge_nats(kSure, -1), 0);
+  EXPECT_GT(edge_nats(kSure, 0, 0.5), 0) << "where nothing tells whether it is a round";
+  EXPECT_LT(edge_nats(kSure, -1, 0.5), 0);
+  EXPECT_GT(edge_nats(kSure, -1, 0.05), 0) << "where rounds are rare";
 }
 
 TEST(Select, TheContourOfASphereIsNoEdgeWhateverCircleStandsForIt) {
@@ -128,6 +129,7 @@ TEST(Select, AnEdgeThatStandsOffInSingleViewsIsLikelierIfItsDetectorErrsSo) {
   const auto nats = [&w](const char* detector, int stroke) {
     ReconstructOptions options;
     options.detector = detector;
+    options.select.round.least_radius_px = 1e6;  // what tells of rounds is another matter
     return select_strokes(cube(), w, select_options(options)).nats[stroke];
   };
   EXPECT_GT(nats("2dgs-sn", 0), nats("image", 0) + 3);
@@ -238,7 +240,7 @@ TEST(Select, SaysWhyAStrokeFalls) {
   }
   const Selection out = select_strokes(s, make_edge_world(views, maps), {});
   EXPECT_EQ(out.verdicts[tiny], Verdict::kShort);
-  EXPECT_EQ(out.verdicts[soft], Verdict::kRound) << "as wide as a band in all views";
+  EXPECT_EQ(out.verdicts[soft], Verdict::kUnlikely);
   EXPECT_EQ(out.verdicts[nowhere], Verdict::kUnlikely);
   EXPECT_EQ(out.sketch.size(), 12);
   EXPECT_STREQ(verdict_name(Verdict::kShort), "short");
