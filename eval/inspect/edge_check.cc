@@ -14,12 +14,6 @@ constexpr double kBetween = 0.95;
 constexpr double kFloor = 0.01;  // [tolerances] of errors: better is not told apart
 // Two lines are farthest apart at an end: two places are all.
 
-// Pieces of a closed curve have its shape.
-StrokeKind shape_of(StrokeKind kind) {
-  if (kind == StrokeKind::kCircle) return StrokeKind::kArc;
-  return kind == StrokeKind::kEllipse ? StrokeKind::kEllipticArc : kind;
-}
-
 void summarise(const EdgeMatch& match, EdgeCheck* check) {
   std::vector<std::pair<double, double>> gaps;
   double total = 0, below = 0;
@@ -79,7 +73,6 @@ MeasuredEdge measure_edge(const EdgeMatch& match, const NominalEdge& edge, const
     const std::vector<EdgePlace> places = places_beside(match, s, straight ? 2 : kPlaces);
     PieceErrors errors = piece_errors(measured, places, held, sigma);
     errors.model.between = straight ? 1 : kBetween;
-    errors.unlike = shape_of(edge.kind) != shape_of(measured.strokes[s].kind);
     check.sigma = std::max(check.sigma, errors.sigma);
     check.systematic = std::max(check.systematic, errors.systematic);
     check.open = check.open || is_open(measured, s);
@@ -103,14 +96,12 @@ DeviationPrior prior_of(const std::vector<MeasuredEdge>& edges, double tolerance
   return learn_prior(vague, evidence);
 }
 
-EdgeCheck judge_edge(const MeasuredEdge& edge, const DeviationPrior& prior,
-                     const MeasuredEdge* twin) {
-  const bool pair = twin && twin->pieces.size() == 1 && edge.pieces.size() == 1;
+EdgeCheck judge_edge(const MeasuredEdge& edge, const DeviationPrior& prior) {
   EdgeCheck out = edge.check;
   if (!edge.pieces.empty()) {
     std::vector<DeviationMixture> there, errors;
     for (const PieceLikelihood& p : edge.pieces) {
-      there.push_back(p.posterior(prior, pair ? &twin->pieces[0] : nullptr));
+      there.push_back(p.posterior(prior));
       errors.push_back(p.errors());
     }
     bound_tube(there, out.tolerance, &out.within);

@@ -44,8 +44,6 @@ MeasuredEdge measure_edge(const EdgeMatch& match, const NominalEdge& edge, const
 /// What the edges of a part say of its deviations; `learn`: or nothing.
 DeviationPrior prior_of(const std::vector<MeasuredEdge>& edges, double tolerance, bool learn);
 
-/// `twin`: an edge that was made together with it (see twin_of), or null.
-EdgeCheck judge_edge(const MeasuredEdge& edge, const DeviationPrior& prior,
-                     const MeasuredEdge* twin = nullptr);
+EdgeCheck judge_edge(const MeasuredEdge& edge, const DeviationPrior& prior);
 
 }  // namespace sketchsplat

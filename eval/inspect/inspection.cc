@@ -57,10 +57,8 @@ void warn_of_sigma(const Sketch& measured, double footprint, std::vector<std::st
   const auto unknown = std::count_if(measured.evidence.begin(), measured.evidence.end(),
                                      [](const Evidence& e) { return !(e.sigma > 0); });
   if (unknown > 0)
-    warnings->push_back(
-        std::to_string(unknown) + " of " + std::to_string(measured.size()) +
-        " measured curves have no sigma: taken as " +
-        (footprint > 0 && typical_bias_px(measured) > 0 ? "off by a quarter of a pixel" : "exact"));
+    warnings->push_back(std::to_string(unknown) + " of " + std::to_string(measured.size()) +
+                        " measured curves have no sigma: taken as exact");
   if (!(footprint > 0) && unknown < measured.size())
     warnings->push_back("nobody knows how long a pixel is at the part: sigmas are of edgels alone");
 }
@@ -140,10 +138,7 @@ void check_edges(const Nominal& nominal, double tolerance, bool learn, const Sig
   out->prior = prior_of(measured, tolerance, learn);
   out->edges.resize(n);
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int e = 0; e < n; ++e) {
-    const int twin = twin_of(nominal, e);
-    out->edges[e] = judge_edge(measured[e], out->prior, twin >= 0 ? &measured[twin] : nullptr);
-  }
+  for (int e = 0; e < n; ++e) out->edges[e] = judge_edge(measured[e], out->prior);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -149,10 +148,6 @@ int find_name(const List& list, const std::string& name) {
   return -1;
 }
 
-bool is_full(const Nominal& nominal, int edge, NominalCircle* circle) {
-  return circle_of(nominal, edge, circle) && circle->angle > 2 * M_PI - kSame;
-}
-
 }  // namespace
 
 Nominal make_nominal(const Sketch& sketch, const std::string& name) {
@@ -190,23 +185,6 @@ bool circle_of(const Nominal& nominal, int edge, NominalCircle* circle) {
     circle->angle = std::min(2 * M_PI, circle->angle + c.angle);
   }
   return true;
-}
-
-int twin_of(const Nominal& nominal, int edge) {
-  NominalCircle own, other;
-  if (!is_full(nominal, edge, &own)) return -1;
-  int best = -1;
-  double least = std::numeric_limits<double>::infinity();
-  for (int e = 0; e < int(nominal.edges.size()); ++e) {
-    if (e == edge || !is_full(nominal, e, &other)) continue;
-    const Eigen::Vector3d step = other.centre - own.centre;
-    const double along = std::abs(own.normal.dot(step)), same = kSame * nominal.extent;
-    if (own.normal.cross(other.normal).norm() > kSame || along < same || along >= least ||
-        own.normal.cross(step).norm() > same || std::abs(own.radius - other.radius) > same)
-      continue;
-    least = along, best = e;
-  }
-  return best;
 }
 
 int find_edge(const Nominal& nominal, const std::string& name) {

@@ -48,10 +48,6 @@ struct NominalCircle {
 /// False if the edge is none.
 bool circle_of(const Nominal& nominal, int edge, NominalCircle* circle);
 
-/// The other rim of the cylinder that a full circle is a rim of: the nearest circle of its radius
-/// on its axis; -1 if there is none.
-int twin_of(const Nominal& nominal, int edge);
-
 /// Index of the edge or plane of this name; -1 if there is none.
 int find_edge(const Nominal& nominal, const std::string& name);
 int find_plane(const Nominal& nominal, const std::string& name);

@@ -100,114 +100,73 @@ PieceLikelihood::PieceLikelihood(const PieceErrors& errors, double tail_share,
     if (wrong == 1) by.head<3>().setOnes();
     if (wrong == 2) by.segment<3>(3).setOnes();
     if (wrong == 3) by[6] = 1;
-    shapes_.push_back(basis_.transpose() * rigid * by.asDiagonal());
+    const MatrixXd moves = basis_.transpose() * rigid * by.asDiagonal();
+    shapes_.push_back(moves * moves.transpose());
   }
   const VectorXd mean = measured_.mean.reshaped();
   rigid_ = basis_.transpose() * mean;
   wave_ = mean - basis_ * rigid_;
-  height_ = wave_.norm();
-  const bool waves = height_ > kLeastRigid * floor;
-  if (waves)
-    wave_ /= height_;
-  else
-    wave_.setZero(), height_ = 0;
   const MatrixXd own = basis_.transpose() * measured_.modes;
   others_ = measured_.modes - basis_ * own;
   const MatrixXd least = floor * floor * MatrixXd::Identity(k, k);
-  const double rough = floor * floor + (errors.unlike ? height_ * height_ : 0);
-  const double known = (others_.transpose() * wave_).squaredNorm();
-  others_ -= (wave_ * (wave_.transpose() * others_)).eval();
   const auto add = [&](double factor, double share) {
-    const double square = factor * factor;
     if (share > 0)
-      kinds_.push_back(
-          {factor, share, square * own * own.transpose() + least, square * known + rough});
+      kinds_.push_back({factor, share, factor * factor * own * own.transpose() + least});
   };
   add(1, 1 - tail_share);
   add(wide_, tail_share);
 }
 
-// As many places deviate by the scale, or by little of it.
-double PieceLikelihood::wave_variance(double scale, int wrong) const {
-  const double by = wrong == 0 ? scale : kLittle * scale;
-  return double(wave_.size()) / 2 * by * by;
-}
-
-PieceLikelihood::Expected PieceLikelihood::expected(double scale, int wrong,
-                                                    const PieceLikelihood* twin) const {
-  const MatrixXd& own = shapes_[wrong];
-  const MatrixXd prior = scale * scale * own * own.transpose();
-  if (!twin) return {VectorXd::Zero(prior.rows()), prior};
-  // What they have in common; each turns by itself.
-  Eigen::Matrix<double, 7, 1> common;
-  common << 1, 1, 1, 0, 0, 0, 1;
-  const MatrixXd& other = twin->shapes_[wrong];
-  MatrixXd error = scale * scale * other * other.transpose();
-  for (const Kind& kind : twin->kinds_) error += kind.share * kind.covariance;
-  const Eigen::LLT<MatrixXd> llt(error);
-  const MatrixXd both = scale * scale * own * common.asDiagonal() * other.transpose();
-  return {both * llt.solve(twin->rigid_), prior - both * llt.solve(both.transpose())};
-}
-
-double PieceLikelihood::log_evidence(const Expected& expected, double scale, int wrong,
-                                     const Kind& kind) const {
-  const Eigen::LLT<MatrixXd> llt(expected.covariance + kind.covariance);
-  const VectorXd z = llt.matrixL().solve(rigid_ - expected.mean);
+double PieceLikelihood::log_evidence(double scale, int wrong, const Kind& kind) const {
+  const Eigen::LLT<MatrixXd> llt(scale * scale * shapes_[wrong] + kind.covariance);
+  const VectorXd z = llt.matrixL().solve(rigid_);
   const MatrixXd l = llt.matrixL();
-  const double of_wave =
-      height_ > 0 ? log_normal(height_, wave_variance(scale, wrong) + kind.wave) : 0;
-  return std::log(kind.share / kWays) - 0.5 * z.squaredNorm() - l.diagonal().array().log().sum() +
-         of_wave;
+  return std::log(kind.share / kWays) - 0.5 * z.squaredNorm() - l.diagonal().array().log().sum();
 }
 
 double PieceLikelihood::log_evidence(double scale) const {
   std::vector<double> logs;
-  for (int wrong = 0; wrong < kWays; ++wrong) {
-    const Expected alone = expected(scale, wrong, nullptr);
-    for (const Kind& kind : kinds_) logs.push_back(log_evidence(alone, scale, wrong, kind));
-  }
+  for (const Kind& kind : kinds_)
+    for (int wrong = 0; wrong < kWays; ++wrong) logs.push_back(log_evidence(scale, wrong, kind));
   return log_sum(logs);
 }
 
-DeviationModel PieceLikelihood::posterior(const Expected& expected, double scale, int wrong,
-                                          const Kind& kind) const {
-  const MatrixXd& prior = expected.covariance;
+DeviationModel PieceLikelihood::posterior(double scale, int wrong, const Kind& kind) const {
+  const MatrixXd prior = scale * scale * shapes_[wrong];
   const Eigen::LLT<MatrixXd> llt(prior + kind.covariance);
   DeviationModel out;
-  const double wave = wave_variance(scale, wrong), share = wave / (wave + kind.wave);
-  const VectorXd rigid = expected.mean + prior * llt.solve(rigid_ - expected.mean);
-  const VectorXd mean = basis_ * rigid + share * height_ * wave_;
+  const VectorXd mean = basis_ * (prior * llt.solve(rigid_)) + wave_;
   out.mean = mean.reshaped(2, mean.size() / 2);
   out.between = measured_.between;
   MatrixXd covariance = prior - prior * llt.solve(prior);
   // Rounding must not make it indefinite.
-  covariance.diagonal().array() += 1e-12 * scale * scale * double(measured_.mean.cols());
-  out.modes.resize(basis_.rows(), basis_.cols() + others_.cols() + 1);
-  out.modes << basis_ * MatrixXd(covariance.llt().matrixL()), kind.factor * others_,
-      std::sqrt(share * kind.wave) * wave_;
+  covariance.diagonal().array() += 1e-12 * prior.diagonal().maxCoeff();
+  out.modes.resize(basis_.rows(), basis_.cols() + others_.cols());
+  out.modes << basis_ * MatrixXd(covariance.llt().matrixL()), kind.factor * others_;
   return out;
 }
 
-DeviationMixture PieceLikelihood::posterior(const DeviationPrior& prior,
-                                            const PieceLikelihood* twin) const {
-  std::vector<DeviationModel> parts;
+DeviationMixture PieceLikelihood::posterior(const DeviationPrior& prior) const {
+  struct Part {
+    size_t scale, kind;
+    int wrong;
+  };
+  std::vector<Part> parts;
   std::vector<double> weights;
   for (size_t s = 0; s < prior.scales.size(); ++s)
-    for (int wrong = 0; wrong < kWays; ++wrong)
-      for (int with = 0; with <= (twin ? 1 : 0); ++with) {
-        const double scale = prior.scales[s];
-        const Expected there = expected(scale, wrong, with ? twin : nullptr);
-        for (const Kind& kind : kinds_) {
-          parts.push_back(posterior(there, scale, wrong, kind));
-          weights.push_back(std::log(prior.weights[s]) + log_evidence(there, scale, wrong, kind));
-        }
+    for (size_t k = 0; k < kinds_.size(); ++k)
+      for (int wrong = 0; wrong < kWays; ++wrong) {
+        parts.push_back({s, k, wrong});
+        weights.push_back(std::log(prior.weights[s]) +
+                          log_evidence(prior.scales[s], wrong, kinds_[k]));
       }
   normalise(&weights);
   DeviationMixture out;
   double total = 0;
   for (size_t i = 0; i < parts.size(); ++i) {
     if (weights[i] < kLeastWeight) continue;
-    out.parts.push_back(parts[i]);
+    out.parts.push_back(
+        posterior(prior.scales[parts[i].scale], parts[i].wrong, kinds_[parts[i].kind]));
     out.weights.push_back(weights[i]);
     total += weights[i];
   }

@@ -38,11 +38,11 @@ DeviationPrior learn_prior(const DeviationPrior& vague,
 /// each column is taken by a standard normal number.
 Eigen::MatrixXd rigid_deviations(const std::vector<EdgePlace>& places);
 
-/// The likelihood of the true deviation of a piece of an edge, from what was measured. What was
-/// measured is held against the prior: that which a small similarity explains, and the rest, a wave
-/// of which the size alone is unknown. A scale is that of all of it, or of the shift, the turn or
-/// the growth alone (a hole in the wrong place, a bore of the wrong size), and an eighth of that
-/// for the rest. The wave of a stroke of another kind than the edge is nothing but its error.
+/// The likelihood of the true deviation of a piece of an edge, from what was measured. Of what was
+/// measured, that which a small similarity explains is held against the prior; the rest, a wave,
+/// stays as it was measured. A scale is that of the whole similarity, or of its shift, turn or
+/// growth alone (a hole in the wrong place, a bore of the wrong size), and an eighth of that for
+/// the rest.
 class PieceLikelihood {
  public:
   /// `rigid`: rigid_deviations(); `floor`: standard deviation that is always added.
@@ -52,10 +52,8 @@ class PieceLikelihood {
   /// Of what was measured, up to a constant, if true deviations have this scale.
   double log_evidence(double scale) const;
 
-  /// What the true deviation is, then. `twin`: of another edge, or null, that was made together
-  /// with this one, like the other rim of a hole: as likely as not, shift and growth are the same.
-  DeviationMixture posterior(const DeviationPrior& prior,
-                             const PieceLikelihood* twin = nullptr) const;
+  /// What the true deviation is, then.
+  DeviationMixture posterior(const DeviationPrior& prior) const;
 
   /// What was measured less what is there.
   DeviationMixture errors() const;
@@ -64,28 +62,18 @@ class PieceLikelihood {
   struct Kind {  // of errors: as a rule, and in the tail
     double factor, share;
     Eigen::MatrixXd covariance;  // K x K
-    double wave;                 // variance of the wave's size
   };
   static constexpr int kWays = 4;  // to be wrong: in all, place, direction, size
-  double wave_variance(double scale, int wrong) const;
-  // What is expected of the rigid deviation: of the prior alone, or with what the twin says.
-  struct Expected {
-    Eigen::VectorXd mean;
-    Eigen::MatrixXd covariance;
-  };
-  Expected expected(double scale, int wrong, const PieceLikelihood* twin) const;
-  double log_evidence(const Expected& expected, double scale, int wrong, const Kind& kind) const;
-  DeviationModel posterior(const Expected& expected, double scale, int wrong,
-                           const Kind& kind) const;
+  double log_evidence(double scale, int wrong, const Kind& kind) const;
+  DeviationModel posterior(double scale, int wrong, const Kind& kind) const;
 
   DeviationModel measured_;
   double wide_;
-  Eigen::MatrixXd basis_;                // 2 P x K, orthonormal: of rigid deviations
-  std::vector<Eigen::MatrixXd> shapes_;  // K x 7: what they are at scale 1, by way
-  Eigen::VectorXd rigid_;                // K: of what was measured
-  Eigen::VectorXd wave_;                 // 2 P: the direction of the rest, unit or 0
-  double height_ = 0;                    // its size
-  Eigen::MatrixXd others_;               // 2 P x M: modes of errors, as far as they are waves
+  Eigen::MatrixXd basis_;   // 2 P x K, orthonormal: of rigid deviations
+  std::vector<Eigen::MatrixXd> shapes_;  // K x K: their covariance at scale 1, by way
+  Eigen::VectorXd rigid_;   // K: of what was measured
+  Eigen::VectorXd wave_;    // 2 P: the rest
+  Eigen::MatrixXd others_;  // 2 P x M: modes of errors, as far as they are waves
   std::vector<Kind> kinds_;
 };
 

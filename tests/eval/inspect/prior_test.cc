@@ -147,36 +147,6 @@ TEST(Prior, ABoreOfTheWrongSizeIsWrongThoughEverythingElseIsRight) {
   EXPECT_LT(share_within(draw_largest({there}), 1), 0.01);
 }
 
-double within_half(const PieceLikelihood& piece, const PieceLikelihood* twin = nullptr) {
-  return share_within(draw_largest({piece.posterior(vague_prior(0.5), twin)}), 0.5);
-}
-
-TEST(Prior, TheOtherRimOfAHoleTellsWhereThisOneIs) {
-  const auto places = circle_places();
-  const MatrixXd rigid = rigid_deviations(places);
-  const auto at = [&](double x, double sigma) {
-    return PieceLikelihood(measured_at(places, {x, 0, 0}, sigma), 0, rigid, 5e-3);
-  };
-  const PieceLikelihood far = at(0.55, 0.3), right = at(0, 0.1), moved = at(1, 0.1);
-  EXPECT_GT(within_half(far), 0.1);
-  EXPECT_LT(within_half(far, &moved), 0.05);
-  EXPECT_GT(within_half(far, &right), within_half(far) + 0.1);
-  const PieceLikelihood slanted = at(3, 0.3);
-  EXPECT_LT(within_half(slanted, &right), 0.01) << "they need not agree";
-}
-
-TEST(Prior, WhatAStrokeOfASimplerKindLacksIsNoDeviation) {
-  const auto places = circle_places();
-  PieceErrors errors = measured_at(places, {0, 0, 0}, 0.05);
-  for (int j = 0; j < 12; ++j)  // four lobes
-    errors.model.mean.col(j) =
-        frame_across(places[j].tangent) * (j % 3 ? -0.4 : 0.8) * places[j].nominal;
-  const MatrixXd rigid = rigid_deviations(places);
-  EXPECT_LT(within_half(PieceLikelihood(errors, 0.1, rigid, 5e-3)), 0.01);
-  errors.unlike = true;
-  EXPECT_GT(within_half(PieceLikelihood(errors, 0.1, rigid, 5e-3)), 0.2);
-}
-
 TEST(Prior, ARigidMoveOfACircleHasSixWays) {
   const std::vector<EdgePlace> circle = circle_places();
   const auto ways = [](const std::vector<EdgePlace>& places) {
