@@ -14,10 +14,11 @@ struct RoundOptions {
   GapOptions gap;           ///< to the whole turn
 };
 
-/// Most of a circle or an ellipse, in one arc or in two that share a node, or of a circle in two that
-/// share none, is all of it if nothing else ends there and that takes fewer words: it has no nodes, but an edge must run through the
-/// gap (gap_cost). The same of ellipses that are circles, and of loose strokes that lie on a closed
-/// one. `described` is of the sketch and follows it; `rounded` counts arcs.
+/// Most of a circle or an ellipse, in one arc or in two that share a node, or of a circle in two
+/// that share none, is all of it if nothing else ends there and that takes fewer words: it has no
+/// nodes, but an edge must run through the gap (gap_cost). The same of ellipses that are circles,
+/// and of loose strokes that lie on a closed one. `described` is of the sketch and follows it;
+/// `rounded` counts arcs.
 Sketch round_arcs(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
                   Described* described, int* rounded);
 

@@ -199,7 +199,8 @@ void list_fields(ReconstructOptions* o, Fields* f) {
   list_strokes(o, f);
   list_rounds(o, f);
   f->group("Output");
-  f->add("blends", &o->blends, "List rounded edges with their radii in report.json, too");
+  f->add("blends", &o->blends, "List rounded edges with their radii in report.json, too").expert =
+      true;
   f->add("largest-blend", &o->blend_px, "px", 1, 1e6, "Radius of what is no rounded edge any more")
       .expert = true;
   f->add("min-confidence", &o->min_confidence, "", 0, 1,

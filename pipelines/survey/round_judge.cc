@@ -190,7 +190,8 @@ void RoundJudge::learn_widths(const std::vector<Sightings>& strokes) {
   learn_rate(strokes);
 }
 
-// In photographs edges are less often as wide as most than in renders: the sharpest strokes tell.
+// In photographs edges are less often as wide as most than in renders: the sharpest strokes tell,
+// unless all of them may be rounds.
 void RoundJudge::learn_rate(const std::vector<Sightings>& strokes) {
   std::vector<float> shares;
   for (const Sightings& seen : strokes) {
@@ -203,7 +204,8 @@ void RoundJudge::learn_rate(const std::vector<Sightings>& strokes) {
   }
   if (shares.empty()) return;
   const double stated = share_of_same(model_.edge_widths);
-  const double rate = std::min<double>(stated, quantile(shares, kSharpest));
+  const double rate =
+      std::clamp<double>(quantile(shares, kSharpest), share_of_same(model_.round_widths), stated);
   for (WidthRates* widths : {&model_.edge_widths, &model_.round_widths})
     *widths = with_share_of_same(*widths, share_of_same(*widths) * rate / stated);
 }
@@ -325,7 +327,8 @@ double odds_of_round(const std::vector<double>& nats) {
     for (const double n : nats) rounds += 1 / (1 + std::exp(-n) / odds);
     odds = rounds / (kRounds + kEdges + double(nats.size()) - rounds);
   }
-  return odds;
+  // Edges that err look like rounds, all of them at once: they do not make one another rounds.
+  return std::min(odds, kRounds / kEdges);
 }
 
 }  // namespace sketchsplat

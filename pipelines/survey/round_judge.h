@@ -100,7 +100,7 @@ class RoundJudge {
 
 /// Odds of a round rather than an edge before a stroke is looked at, from the likelihood ratios
 /// [nat] of all strokes of a scene: where all others are sharp, this one hardly is a round
-/// (empirical Bayes). The most probable ones; without strokes one in three is a round.
+/// (empirical Bayes). The most probable ones, at most those without strokes: one half.
 double odds_of_round(const std::vector<double>& nats);
 
 /// What the views show along a stroke that show enough of it.
