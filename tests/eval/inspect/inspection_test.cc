@@ -132,7 +132,7 @@ TEST(Inspect, AScaleThatCamerasLeaveOpenIsMeasuredByTheEdges) {
   EXPECT_THAT(i.warnings, testing::Contains(HasSubstr("cameras leave the scale open")));
   for (const DimensionResult& d : i.dimensions) EXPECT_EQ(d.verdict, Judgement::kIn);
   o.align.scale_sigma = 0.0005;  // surely it is not the scale
-  const Sketch larger = moved(with_sigma(plate(), 0.002), {1.004});
+  const Sketch larger = moved(with_sigma(plate(), 0.002), {1.008});
   EXPECT_EQ(inspect(nominal_plate(), larger, 0, o).verdict, Judgement::kOut);
 }
 
