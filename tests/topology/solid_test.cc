@@ -140,6 +140,33 @@ TEST(FindSolid, FacesThatNoOtherChoiceDoesWithoutAreAShell) {
   EXPECT_FALSE(find_solid(plate_with_hole(0.2).edges).shell) << "there is a solid";
 }
 
+TEST(FindSolid, WhatWouldTakeForeverIsRefusedAtOnce) {
+  Sketch sketch = box_edges();
+  SolidOptions impatient;
+  impatient.nodes = 0;
+  const SolidSearch undecided = find_solid(sketch, impatient);
+  EXPECT_TRUE(undecided.solid || undecided.why == "no choice of faces is proven to be the best")
+      << undecided.why;
+  impatient = {};
+  impatient.most_exclusive = -1;
+  const SolidSearch many = find_solid(sketch, impatient);
+  EXPECT_FALSE(many.solid || many.shell);
+  EXPECT_EQ(many.why, "too many faces are possible");
+}
+
+TEST(FindSolid, WhereNearlyAllIsLeftOverNoMoreIsTried) {
+  Sketch sketch = box_edges();
+  for (int i = 0; i < 60; ++i) {  // far away, of no face
+    const double x = 4 + 0.1 * i;
+    const int a = sketch.add_node({x, 1e-3 * i * i, 3}), b = sketch.add_node({x + 0.05, 0, 4});
+    sketch.add_stroke(StrokeKind::kLine, a, b, {});
+  }
+  const SolidSearch search = find_solid(sketch);
+  EXPECT_FALSE(search.solid);
+  EXPECT_EQ(search.doubtful.size(), 60u);
+  EXPECT_EQ(search.margin, 0) << "how much worse the second choice is was not asked";
+}
+
 TEST(FindSolid, AnOpenFrameIsRefused) {
   // Of three edges of a side, and of none of its neighbours, nothing is known.
   EXPECT_FALSE(find_solid(without(box_edges(), {0, 1, 2, 3, 4})).solid);

@@ -3,16 +3,18 @@
 
 #include <coin/Cbc_C_Interface.h>
 
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
 namespace sketchsplat {
 namespace {
+
+constexpr double kMostWork = 1e7;  // nodes times entries of the matrix: some seconds
 
 // Columns are yes or no; rows are sums of some of them.
 class Programme {
@@ -21,39 +23,53 @@ class Programme {
     Cbc_setParameter(model_.get(), "logLevel", "0");
     Cbc_setParameter(model_.get(), "ratioGap", "0");
     Cbc_setParameter(model_.get(), "allowableGap", "0");
-    // These programmes are small, and their relaxations nearly whole: what Cbc does before it
-    // begins took ten times as long as the search.
+    // The relaxations are nearly whole: what Cbc does before it begins, and cuts, took ten times as
+    // long as the search.
     Cbc_setParameter(model_.get(), "preProcess", "off");
+    Cbc_setParameter(model_.get(), "cuts", "off");
     Cbc_setParameter(model_.get(), "heuristicsOnOff", "off");
   }
   int add_column(double price) {
-    Cbc_addCol(model_.get(), "", 0, 1, price, 1, 0, nullptr, nullptr);
-    return columns_++;
+    price_.push_back(price);
+    return int(price_.size()) - 1;
   }
   void add_row(const std::map<int, double>& sum, char sense, double bound) {
-    std::vector<int> columns;
-    std::vector<double> factors;
-    for (const auto& [column, factor] : sum) {
-      columns.push_back(column);
-      factors.push_back(factor);
-    }
-    Cbc_addRow(model_.get(), "", int(columns.size()), columns.data(), factors.data(), sense, bound);
+    for (const auto& [column, factor] : sum)
+      entries_.emplace_back(int(low_.size()), column, factor);
+    low_.push_back(sense == 'L' ? -INFINITY : bound);
+    high_.push_back(sense == 'G' ? INFINITY : bound);
   }
   // Values of the columns at the least price.
   std::vector<bool> solve(int nodes) {
+    load();
+    const double affordable = kMostWork / std::max<double>(1, double(entries_.size()));
+    nodes = int(std::min<double>(nodes, affordable));
     Cbc_setParameter(model_.get(), "maxNodes", std::to_string(nodes).c_str());
     Cbc_solve(model_.get());
     if (!Cbc_isProvenOptimal(model_.get()))
-      throw std::runtime_error("no choice of faces is proven to be the best");
+      throw UndecidedChoice("no choice of faces is proven to be the best");
     const double* values = Cbc_getColSolution(model_.get());
-    std::vector<bool> out(columns_);
-    for (int i = 0; i < columns_; ++i) out[i] = values[i] > 0.5;
+    std::vector<bool> out(price_.size());
+    for (size_t i = 0; i < out.size(); ++i) out[i] = values[i] > 0.5;
     return out;
   }
 
  private:
+  // All at once: Cbc copies what it has for every row that is added alone.
+  void load() {
+    const int columns = int(price_.size()), rows = int(low_.size());
+    Eigen::SparseMatrix<double> matrix(rows, columns);
+    matrix.setFromTriplets(entries_.begin(), entries_.end());
+    const std::vector<double> none(columns, 0), all(columns, 1);
+    Cbc_loadProblem(model_.get(), columns, rows, matrix.outerIndexPtr(), matrix.innerIndexPtr(),
+                    matrix.valuePtr(), none.data(), all.data(), price_.data(), low_.data(),
+                    high_.data());
+    for (int i = 0; i < columns; ++i) Cbc_setInteger(model_.get(), i);
+  }
+
   std::unique_ptr<Cbc_Model, void (*)(Cbc_Model*)> model_;
-  int columns_ = 0;
+  std::vector<double> price_, low_, high_;  // of columns; bounds of rows
+  std::vector<Eigen::Triplet<double>> entries_;
 };
 
 // Cells beside every stroke of every surface: to its left (of its direction) and to its right.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <set>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -47,12 +48,17 @@ struct ChosenCells {
   double price = 0;          ///< of all, nat
 };
 
+/// Nobody knows which choice is the best.
+struct UndecidedChoice : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// The cheapest choice in which every edge has two faces, unless it is open: an integer programme,
 /// solved exactly. A stroke between two chosen cells of one surface, or between none, is no edge.
 /// Cells that are all chosen in one of the `other` choices, and no more, are not chosen again.
-/// Without any cells that close: no cells, which is a choice, too. Throws std::runtime_error if
-/// that takes more than so many nodes of the search tree: a count, so that any machine comes to the
-/// same end.
+/// Without any cells that close: no cells, which is a choice, too. Throws UndecidedChoice if that
+/// takes more than so many nodes of the search tree, fewer of a large programme: a count, so that
+/// any machine comes to the same end.
 ChosenCells choose_cells(const CellChoice& choice, const std::vector<ChosenCells>& others,
                          int nodes);
 

@@ -56,8 +56,9 @@ class Search {
 
   SolidSearch plain() { return run(std::vector<bool>(all_.seen.size())); }
 
-  // `plain` was tried, and left strokes over: is there something else to try?
-  bool has_more() {
+  // `plain` was tried, and left strokes over, but not nearly all: is there something else to try?
+  bool has_more(const SolidSearch& plain) {
+    if (plain.doubtful.empty() || is_hopeless(plain)) return false;
     const bool copied = copy_loops(left_, tolerance_, slide_, &all_);
     return copied || !doubles_of(all_.sketch, left_, 3 * tolerance_).empty();
   }
@@ -68,6 +69,7 @@ class Search {
   // What can be said where no choice closes, or several do: of the cells that were tried last.
   // `each`: asks of each face beside an inferred edge whether the strokes can do without.
   void find_shell(bool each, SolidSearch* out) {
+    if (undecided_) return;
     if (!out->doubtful.empty()) open_edges();
     const ChosenCells best = choose_cells(choice_, {}, options_.nodes);
     if (contradicted(weighed_, best.cell) > options_.contradicted * evidence_.rays.size()) return;
@@ -123,29 +125,41 @@ class Search {
     for (size_t c = 0; c < sure->size(); ++c) (*sure)[c] = (*sure)[c] && other.cell[c];
   }
 
-  // `left` by an earlier choice: strokes that may be others seen twice.
   SolidSearch run(const std::vector<bool>& left) {
     SolidSearch out;
+    try {
+      choose(left, &out);
+    } catch (const UndecidedChoice& e) {
+      out.why = e.what();
+      undecided_ = true;
+    }
+    return out;
+  }
+
+  // `left` by an earlier choice: strokes that may be others seen twice.
+  void choose(const std::vector<bool>& left, SolidSearch* found) {
+    SolidSearch& out = *found;
     CellChoice& choice = choice_;
     choice = price_cells(all_, tolerance_, options_, evidence_,
                          doubles_of(all_.sketch, left, 3 * tolerance_), &weighed_);
     out.surfaces = int(all_.surfaces.size());
     out.cells = int(choice.cells.size());
+    if (int(choice.exclusive.size()) > options_.most_exclusive)
+      throw UndecidedChoice("too many faces are possible");
     const ChosenCells best = choose_cells(choice, {}, options_.nodes);
     note_left(best, &out);
     out.rays = int(evidence_.rays.size());
     out.contradicted = contradicted(weighed_, best.cell);
     Solid solid;
     std::vector<int> edge_of;
-    if (!assemble(all_, choice.cells, best, &solid, &edge_of, &out.why)) return out;
+    if (!assemble(all_, choice.cells, best, &solid, &edge_of, &out.why)) return;
     out.faces = int(solid.faces.size());
-    const ChosenCells second = choose_cells(choice, {best}, options_.nodes);
-    out.margin = second.price - best.price;
+    if (!is_hopeless(out))
+      out.margin = choose_cells(choice, {best}, options_.nodes).price - best.price;
     out.why = objection(out);
-    if (!out.why.empty()) return out;
+    if (!out.why.empty()) return;
     out.solid = std::move(solid);
     note_edges(edge_of, &out);
-    return out;
   }
 
   // What became of the strokes that were given. `edge_of`: of those that they were completed to.
@@ -170,6 +184,10 @@ class Search {
     out->twice = int(std::count(best.twice.begin(), best.twice.end(), true));
   }
 
+  bool is_hopeless(const SolidSearch& found) const {
+    return double(found.doubtful.size()) > options_.hopeless * sketch_.size();
+  }
+
   // Why a choice is not good enough; empty if it is.
   std::string objection(const SolidSearch& found) const {
     if (!found.doubtful.empty())
@@ -191,6 +209,7 @@ class Search {
   EvidenceOfCells weighed_;
   CellChoice choice_;       // that was tried last
   std::vector<bool> left_;  // per stroke that is seen: it bounds no face of the last choice
+  bool undecided_ = false;  // the last choice was too large
 };
 
 // Largest distance of a place inside of a stroke that is seen from where the stroke was; ends may
@@ -225,7 +244,7 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
   const bool many = found.front().surfaces > options.many_surfaces;
   std::vector<Search*> more;
   for (size_t i = 0; i < searches.size() && !many && !found.back().solid; ++i)
-    if (!found[i].doubtful.empty() && searches[i].has_more()) {
+    if (searches[i].has_more(found[i])) {
       found.push_back(searches[i].with_copies());
       more.push_back(&searches[i]);
     }
@@ -240,7 +259,11 @@ SolidSearch find_solid(const Sketch& sketch, const SolidOptions& options,
       last.why = "curves would have to move far to lie on their faces";
     }
   } else {
-    searches.front().find_shell(!many, &last);
+    try {
+      searches.front().find_shell(!many, &last);
+    } catch (const UndecidedChoice&) {
+      last.shell.reset();
+    }
   }
   return std::move(last);
 }
