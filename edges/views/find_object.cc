@@ -228,6 +228,25 @@ bool ObjectRegion::contains(const Vector3d& point) const {
   return is_inside(on_table ? outline_on_table : outline, frame * point);
 }
 
+ObjectRegion wider(ObjectRegion region, double by) {
+  region.box.min().array() -= by;
+  region.box.max().array() += by;
+  for (std::vector<Vector2d>* polygon : {&region.outline, &region.outline_on_table})
+    *polygon = convex_hull(widened(*polygon, by));
+  return region;
+}
+
+ObjectRegion region_around(const std::vector<Vector3d>& places, double margin,
+                           const ObjectRegion& before) {
+  ObjectRegion region = before;
+  region.box = box_of(places, margin);
+  if (!region.table) return region;
+  std::vector<Vector2d> seen_from_above;
+  for (const Vector3d& p : places) seen_from_above.push_back(region.frame * p);
+  region.outline = convex_hull(widened(seen_from_above, margin));
+  return region;
+}
+
 ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Vector3d>& cameras,
                          const Vector3d& middle, double reach, double footprint,
                          const RegionOptions& options) {

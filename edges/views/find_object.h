@@ -34,4 +34,12 @@ ObjectRegion find_object(const std::vector<EdgePoint>& points,
                          const std::vector<Eigen::Vector3d>& cameras, const Eigen::Vector3d& middle,
                          double reach, double footprint, const RegionOptions& options);
 
+/// The region and what lies within a distance `by` of it, world units.
+ObjectRegion wider(ObjectRegion region, double by);
+
+/// The region of places that the object takes up, and what lies within a margin, world units, of
+/// them. On the same table, where edges told better what of it is the object's.
+ObjectRegion region_around(const std::vector<Eigen::Vector3d>& places, double margin,
+                           const ObjectRegion& before);
+
 }  // namespace sketchsplat

@@ -53,13 +53,17 @@ constexpr double kSurroundings = 2.5;  // cells
 }  // namespace
 
 VisualHull::VisualHull(const EdgeWorld& world, int cells) {
+  const auto mask_of = [&](size_t v) -> const Image<uint8_t>& {
+    const Image<uint8_t>& mask = world.maps[v].mask;
+    return mask.empty() && world.silhouettes ? (*world.silhouettes)[v] : mask;
+  };
   std::vector<int> masked;
   for (size_t v = 0; v < world.maps.size(); ++v)
-    if (!world.maps[v].mask.empty() && !world.maps[v].edgels.empty()) masked.push_back(int(v));
+    if (!mask_of(v).empty() && !world.maps[v].edgels.empty()) masked.push_back(int(v));
   if (masked.size() < 3 || world.bounds.isEmpty()) return;
   std::vector<Image<int>> sums(masked.size());
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int m = 0; m < int(masked.size()); ++m) sums[m] = integral(world.maps[masked[m]].mask);
+  for (int m = 0; m < int(masked.size()); ++m) sums[m] = integral(mask_of(masked[m]));
   low_ = world.bounds.min();
   cell_ = world.bounds.sizes().maxCoeff() / cells;
   const Eigen::Vector3d n = (world.bounds.sizes() / cell_).array().ceil();

@@ -16,8 +16,8 @@ namespace sketchsplat {
 class VisualHull {
  public:
   VisualHull() = default;  ///< empty: nothing is sure
-  /// `cells` along the longest side of the world's bounds. Without masks the hull is empty and
-  /// nothing is sure.
+  /// `cells` along the longest side of the world's bounds. Where there is no mask, the silhouette
+  /// counts. Without either the hull is empty and nothing is sure.
   VisualHull(const EdgeWorld& world, int cells);
 
   bool empty() const { return occupied_.empty(); }

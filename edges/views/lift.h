@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <memory>
 #include <vector>
 
 #include "datasets/types/view.h"
@@ -22,13 +23,22 @@ struct EdgeWorld {
   Eigen::AlignedBox3d bounds;  ///< holds the object, world units
   ObjectRegion object;         ///< what is known of it; nothing, as a rule, where masks tell
   double footprint = 0;        ///< world length of one pixel at the object (median over the views)
-  VisualHull hull;             ///< of the masks; empty without
+  /// Per view, what is known without masks of where the object is (silhouettes.h), as a mask that
+  /// is no smaller than it; empty where nothing is. Null without any.
+  std::shared_ptr<const std::vector<Image<uint8_t>>> silhouettes;
+  VisualHull hull;  ///< of the masks, or else the silhouettes; empty without
+
+  /// Do masks tell what is the object in any view?
+  bool has_masks() const;
 };
 
 /// Bounds from the edgels' boxes in all views: with masks, the part of space that (nearly) every
 /// view sees inside its own box of edgels; without, the part of what the cameras look at that a
 /// quarter of them sees. Views without edgels do not vote. `bounds` is empty if nothing remains.
 EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps);
+
+/// EdgeWorld::hull as the world is.
+VisualHull hull_of(const EdgeWorld& world);
 
 /// EdgeWorld::plane_normal of a view.
 Eigen::Matrix3Xf plane_normals(const View& view, const EdgelMap& map);

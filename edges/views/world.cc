@@ -97,6 +97,12 @@ Eigen::Vector3d meeting_point(const std::vector<View>& views) {
   return A.ldlt().solve(b);
 }
 
+bool EdgeWorld::has_masks() const {
+  return std::any_of(maps.begin(), maps.end(), [](const EdgelMap& m) { return !m.mask.empty(); });
+}
+
+VisualHull hull_of(const EdgeWorld& world) { return VisualHull(world, kHullCells); }
+
 EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
   EdgeWorld world;
   world.views = std::move(views);
@@ -110,8 +116,7 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
     if (z > 0) reach = std::max(reach, z * half_field(v));
   }
   // Masks hold the object as a whole in nearly all views; without, views may be details of it.
-  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
-                                  [](const EdgelMap& m) { return !m.mask.empty(); });
+  const bool masked = world.has_masks();
   const double most = masked ? 0.05 : 0.75;
   if (!masked) reach *= kBeyondField;
   Eigen::AlignedBox3d cube(middle - Eigen::Vector3d::Constant(reach),
@@ -127,7 +132,7 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
     world.plane_normal.push_back(plane_normals(v, world.maps[i]));
   }
   world.footprint = median(std::move(footprint));
-  world.hull = VisualHull(world, kHullCells);
+  world.hull = hull_of(world);
   return world;
 }
 

@@ -52,9 +52,8 @@ Observation look(const Posed& posed, double reach_px) {
 
 // Hull and bounds follow the cameras where masks tell.
 EdgeWorld refreshed(EdgeWorld world) {
-  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
-                                  [](const EdgelMap& m) { return !m.mask.empty(); });
-  if (!masked) return world;
+  if (world.silhouettes) world.hull = hull_of(world);
+  if (!world.has_masks()) return world;
   const ObjectRegion object = world.object;
   EdgeWorld out = make_edge_world(std::move(world.views), std::move(world.maps));
   out.object = object;

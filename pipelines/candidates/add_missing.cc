@@ -27,6 +27,7 @@ constexpr double kPromise = -1;       // [nat] of a hasty look that asks for a t
 constexpr double kNearAsidePx = 6;    // [px] of a copy that shows what is no edge; more by turns
 constexpr int kAsides = 7;
 constexpr int kPasses = 3;
+constexpr int kMostCandidates = 8000;  // a sketch that leads to expect more tells nothing
 constexpr double kBeside = 0.4;  // of the nats of a candidate that copies aside may get
 
 ContrastJudge judge_beside(const Sketch& sketch, const EdgeWorld& world,
@@ -109,7 +110,9 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
   const double px = world.footprint;
   const KnownCurves known(sketch, px, kKnownPx * px);
   Judged out;
-  for (const Candidate& c : all_candidates(sketch, world, known, judge, &out.tests)) {
+  const std::vector<Candidate> all = all_candidates(sketch, world, known, judge, &out.tests);
+  if (int(all.size()) > kMostCandidates) return out;
+  for (const Candidate& c : all) {
     const CurvePoints points = candidate_points(c, px);
     if (points.position.cols() < kLeastPx || known.share(points) > kKnownShare) continue;
     if (std::any_of(out.points.begin(), out.points.end(),

@@ -56,6 +56,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
       detector->takes_smaller_pictures() ? with_smaller_pictures(scene, options.least_side) : scene;
   EdgeWorld all = detect_scene(small, detector, tags, options, &report, progress);
   EdgeWorld near = focus_on_object(std::move(all), options, &report, progress);
+  near = tell_silhouettes(small, *detector, std::move(near), options, &report, progress);
   const FamilyStart family = start_from_siblings(near, options, &report, progress);
   const ReconstructOptions last = options_after(family, options);
   const bool cold = family.sketch.size() == 0;

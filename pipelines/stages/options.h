@@ -79,6 +79,7 @@ struct ReconstructOptions : DetectionOptions {
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
   bool second_look = true;   ///< at the edgels that no stroke explains
+  bool silhouettes = true;   ///< told by colours, where there are no masks
   bool final_polish = true;  ///< end on the edgels themselves
   /// [px] standard deviation of the edgels of surfels about their edge, see EvidenceModel
   double surfel_sigma_px = 0.25;

@@ -26,6 +26,13 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector
 EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
                           Progress* progress);
 
+/// Without masks, where the object is known (focus_on_object): its silhouettes, told by colours, if
+/// those of nearly all views agree (silhouettes.h); a detector that looks at single pictures looks
+/// again at what lies on them. `scene`: of the world's views.
+EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world,
+                           const ReconstructOptions& options, RunReport* report,
+                           Progress* progress);
+
 /// The space sweep over all edgels. Throws TooLittleError if no point is found.
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
                                   RunReport* report, Progress* progress);

@@ -19,6 +19,7 @@ Step step(const std::string& name, T* value) {
 std::vector<Step> method_steps(ReconstructOptions* o) {
   return {step("conics", &o->segment.conics),
           step("rewrite", &o->rechain.on),
+          step("silhouettes", &o->silhouettes),
           step("visibility", &o->optimize.visibility),
           step("simplify", &o->simplify),
           step("early-polish", &o->early_polish),

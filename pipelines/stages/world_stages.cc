@@ -7,6 +7,7 @@
 #include "datasets/types/errors.h"
 #include "edges/views/find_object.h"
 #include "edges/views/focus.h"
+#include "edges/views/silhouettes.h"
 #include "pipelines/detectors/detectors.h"
 #include "pipelines/stages/stages.h"
 
@@ -58,9 +59,7 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
     region.box = options.box;
     return focused(std::move(world), region, options.detect.meaning.most_sides);
   }
-  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
-                                  [](const EdgelMap& m) { return !m.mask.empty(); });
-  if (masked) return world;
+  if (world.has_masks()) return world;
   Stage stage("object", 0, report, progress);
   const EdgeWorld coarse = focused(world, {}, kCoarseSides);
   LiftOptions lift = options.lift;
@@ -77,6 +76,55 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
                   0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, look);
   stage.result(object.table ? "on a table" : "no table");
   return focused(std::move(world), object, options.detect.meaning.most_sides);
+}
+
+namespace {
+
+// Edges of the object alone: noise and texture of what lies around it tell nothing about it.
+void detect_on_silhouettes(const Scene& scene, const Detector& detector, const Silhouettes& found,
+                           double most_sides, EdgeWorld* world) {
+  constexpr double kAround = 6;  // [px] so that no edge of the object is one of the alpha's
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int v = 0; v < int(world->views.size()); ++v) {
+    const Image<uint8_t>& mask = found.mask[v];
+    if (mask.empty()) continue;
+    View view = world->views[v];
+    view.make_picture = [&] {
+      Picture picture = read_picture(world->views[v]);
+      picture.alpha = alpha_around(mask, kAround);
+      return picture;
+    };
+    try {
+      EdgelMap map = detector.detect(scene, view);
+      map.mask = {};
+      map.grey = world->maps[v].grey;
+      if (most_sides > 0)
+        map = most_meaningful(map, most_sides * std::sqrt(double(map.width) * map.height));
+      world->maps[v] = std::move(map);
+    } catch (const InputError&) {
+      continue;  // it was read before: what was found then stays
+    }
+  }
+}
+
+}  // namespace
+
+EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world, const ReconstructOptions& options,
+                           RunReport* report, Progress* progress) {
+  const bool known = world.object.table || (!options.box.isEmpty() && !world.has_masks());
+  if (!options.silhouettes || !known) return world;
+  Stage stage("silhouettes", 0, report, progress);
+  const Silhouettes found = find_silhouettes(
+      world.views, world.object,
+      [&](int view, int denominator) { return read_picture(world.views[view], denominator); });
+  const bool kept = !found.mask.empty();
+  stage.result(kept ? std::to_string(found.trusted) + " of " + std::to_string(world.views.size()) +
+                          " views agree"
+                    : "views do not agree");
+  report->counts.push_back({"silhouettes", kept ? double(found.trusted) : 0});
+  if (kept && detector.takes_smaller_pictures())
+    detect_on_silhouettes(scene, detector, found, options.detect.meaning.most_sides, &world);
+  return with_silhouettes(std::move(world), found);
 }
 
 std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,

@@ -270,9 +270,9 @@ double RoundJudge::places_of_band(const Sightings& seen) const {
 double RoundJudge::places_of_rim(const Sightings& seen) const {
   const double widest = std::log(kWidestRim), slack = kRoot2Pi * model_.slack_px;
   double best = -INFINITY;
-  const bool masks = !world_.hull.empty();
+  const bool bright = world_.has_masks(), outlines = !world_.hull.empty();
   for (const double times : {1.0, 3.0, 9.0, -1.0, -3.0, -9.0}) {
-    if (masks && times < 0) break;  // the object is the brighter side of its outline
+    if (bright && times < 0) break;  // the object is the brighter side of its outline
     const RimFit rim = fit_rim(seen, times * model_.least_radius_px);
     const double radius = rim.x.z() * (times > 0 ? 1 : -1);
     if (!(radius >= model_.least_radius_px)) continue;
@@ -282,7 +282,7 @@ double RoundJudge::places_of_rim(const Sightings& seen) const {
     double sum = -std::log(widest * radius) - std::log(2 * M_PI * radius * slack) +
                  3 * std::log(kRoot2Pi) - 0.5 * std::log(precision.determinant());
     for (const RoundSighting& v : seen)
-      if (!masks || v.outline) sum += std::log(near(v.place_px - v.row.dot(rim.x)));
+      if (!outlines || v.outline) sum += std::log(near(v.place_px - v.row.dot(rim.x)));
     best = std::max(best, sum);
   }
   return best;

@@ -23,7 +23,7 @@ constexpr double kKnownRadius = 0.5;  // its standard deviation over itself, at 
 // one.
 RoundJudge::RimFit RoundJudge::fit_rim(const std::vector<RoundSighting>& seen,
                                        double radius_px) const {
-  const bool masks = !world_.hull.empty();
+  const bool outlines = !world_.hull.empty();
   RimFit fit{Vector3d(0, 0, radius_px), Matrix3d::Zero()};
   for (int k = 0; k < kFits; ++k) {
     const bool free = k > 1;  // the radius; the axis comes first
@@ -31,7 +31,7 @@ RoundJudge::RimFit RoundJudge::fit_rim(const std::vector<RoundSighting>& seen,
     Matrix3d H = 1e-4 * Matrix3d::Identity();
     Vector3d g = Vector3d::Zero();
     for (const RoundSighting& v : seen) {
-      if (masks && !v.outline) continue;
+      if (outlines && !v.outline) continue;
       const double r = (v.place_px - v.row.dot(fit.x)) / sigma;
       const double w = k == 0 ? 1 : std::exp(-0.5 * r * r);
       const Vector3d row = free ? v.row : Vector3d(v.row.x(), v.row.y(), 0);
@@ -46,7 +46,7 @@ RoundJudge::RimFit RoundJudge::fit_rim(const std::vector<RoundSighting>& seen,
 }
 
 RoundJudge::Radius RoundJudge::radius(int stroke, const EdgelFlags* others) const {
-  if (world_.hull.empty()) return {};
+  if (!world_.has_masks()) return {};
   const std::vector<RoundSighting> seen = round_sightings(world_, wide_, stroke, others);
   Radius best;
   double most = -INFINITY;

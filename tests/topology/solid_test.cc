@@ -152,6 +152,9 @@ TEST(FindSolid, WhatWouldTakeForeverIsRefusedAtOnce) {
   const SolidSearch many = find_solid(sketch, impatient);
   EXPECT_FALSE(many.solid || many.shell);
   EXPECT_EQ(many.why, "too many faces are possible");
+  impatient = {};
+  impatient.most_surfaces = 3;
+  EXPECT_EQ(find_solid(sketch, impatient).why, "too many faces are possible");
 }
 
 TEST(FindSolid, WhereNearlyAllIsLeftOverNoMoreIsTried) {

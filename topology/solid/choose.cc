@@ -15,6 +15,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr double kMostWork = 1e7;  // nodes times entries of the matrix: some seconds
+constexpr size_t kMostEntries = 250'000;  // relaxations of more take many seconds
 
 // Columns are yes or no; rows are sums of some of them.
 class Programme {
@@ -41,6 +42,7 @@ class Programme {
   }
   // Values of the columns at the least price.
   std::vector<bool> solve(int nodes) {
+    if (entries_.size() > kMostEntries) throw UndecidedChoice("too many faces are possible");
     load();
     const double affordable = kMostWork / std::max<double>(1, double(entries_.size()));
     nodes = int(std::min<double>(nodes, affordable));

@@ -140,9 +140,10 @@ class Search {
   void choose(const std::vector<bool>& left, SolidSearch* found) {
     SolidSearch& out = *found;
     CellChoice& choice = choice_;
+    out.surfaces = int(all_.surfaces.size());
+    if (out.surfaces > options_.most_surfaces) throw UndecidedChoice("too many faces are possible");
     choice = price_cells(all_, tolerance_, options_, evidence_,
                          doubles_of(all_.sketch, left, 3 * tolerance_), &weighed_);
-    out.surfaces = int(all_.surfaces.size());
     out.cells = int(choice.cells.size());
     if (int(choice.exclusive.size()) > options_.most_exclusive)
       throw UndecidedChoice("too many faces are possible");

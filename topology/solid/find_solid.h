@@ -24,6 +24,7 @@ struct SolidOptions {
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
   int many_surfaces = 150;  ///< with more candidates it is not searched more than once
+  int most_surfaces = 500;  ///< with more candidates it is not searched at all
   int nodes = 1000;         ///< of the search tree for the choice, which takes few if it is clear
   int most_exclusive = 20000;  ///< pairs of cells that run through one another: more is hopeless
   double hopeless = 2.0 / 3;   ///< share of the strokes that a first choice must not leave over
