@@ -66,7 +66,8 @@ ContrastJudge::ContrastJudge(const EdgeWorld& world, const CurvePoints& strokes,
                              const ContrastOptions& options)
     : world_(world), options_(options), known_(known_edges(world, strokes, explained)) {}
 
-ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every) const {
+ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every,
+                                      const std::vector<Window>& windows) const {
   const std::vector<int> first = pieces_of(int(curve.position.cols()), options_.piece_px);
   const int pieces = int(first.size()) - 1;
   Pool whole(options_);
@@ -77,16 +78,23 @@ ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every) const
     return 1 / (options_.accident + (1 - options_.accident) * std::exp(-log_ratio));
   };
   for (int v = 0; v < int(world_.views.size()); ++v) {
+    const Eigen::Vector3d camera = world_.views[v].center_in_world();
+    const auto middle_of = [&](int p) -> Eigen::Vector3d {
+      return curve.position.col((first[p] + first[p + 1]) / 2);
+    };
+    std::vector<char> shut(pieces, 0);
+    if (!windows.empty())
+      for (int p = 0; p < pieces; ++p) shut[p] = !any_lets_through(windows, middle_of(p), camera);
+    const bool any_shut = std::count(shut.begin(), shut.end(), 1) > 0;
+    if (any_shut && std::count(shut.begin(), shut.end(), 1) == pieces) continue;
     const std::vector<ContrastReading> readings =
         read_contrasts(world_, v, curve, first, known_, every);
-    const Eigen::Vector3d camera = world_.views[v].center_in_world();
     double sum = 0;
     int tell = 0, sure = 0;
     std::vector<double> each(pieces);
     for (int p = 0; p < pieces; ++p) {
-      if (!readings[p].tells) continue;
-      const Eigen::Vector3d middle = curve.position.col((first[p] + first[p + 1]) / 2);
-      const bool seen = world_.hull.surely_visible(middle, camera);
+      if (!readings[p].tells || shut[p]) continue;
+      const bool seen = world_.hull.surely_visible(middle_of(p), camera);
       const double ratio = std::exp(contrast_ratio(readings[p].z, readings[p].freedom));
       const double shown = std::log(1 - options_.piece_rate + options_.piece_rate * ratio);
       sum += shown, each[p] = std::log(doubted(shown));
@@ -94,7 +102,7 @@ ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every) const
     }
     if (tell == 0) continue;
     const ContrastReading& all = readings[pieces];
-    if (all.tells && pieces > 1)
+    if (all.tells && pieces > 1 && !any_shut)
       sum = std::log(0.5 * std::exp(sum) + 0.5 * std::exp(contrast_ratio(all.z, all.freedom)));
     whole.add(doubted(sum), 2 * sure > tell);
     if (!(sum > 0)) continue;
@@ -115,7 +123,7 @@ void ContrastJudge::take(const CurvePoints& curve) {
   }
 }
 
-double ContrastJudge::beside(const CurvePoints& curve) const {
+double ContrastJudge::beside(const CurvePoints& curve, const std::vector<Window>& windows) const {
   Eigen::Vector3d along = Eigen::Vector3d::Zero();
   for (int i = 0; i < curve.tangent.cols(); ++i) {
     const Eigen::Vector3d t = curve.tangent.col(i);
@@ -127,7 +135,7 @@ double ContrastJudge::beside(const CurvePoints& curve) const {
   for (const Eigen::Vector3d& way : {x, y, Eigen::Vector3d(-x), Eigen::Vector3d(-y)}) {
     CurvePoints copy = curve;
     copy.position.colwise() += kAsidePx * world_.footprint * way;
-    most = std::max(most, judge(copy).nats);
+    most = std::max(most, judge(copy, 1, windows).nats);
   }
   return most;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "edges/contrast/read_contrasts.h"
+#include "edges/contrast/window.h"
 
 namespace sketchsplat {
 
@@ -39,14 +40,17 @@ class ContrastJudge {
                 const std::vector<std::vector<char>>& explained, const ContrastOptions& options);
 
   /// `curve`: one curve, points about a pixel apart. `every`: of which points are read, for haste.
-  ContrastEvidence judge(const CurvePoints& curve, int every = 1) const;
+  /// `windows`: openings through one of which a view must see a piece of the curve to tell of it, as
+  /// the curve is in a pocket or a hole; none: nobody knows from where it is seen.
+  ContrastEvidence judge(const CurvePoints& curve, int every = 1,
+                         const std::vector<Window>& windows = {}) const;
 
   /// What the curve shows from now on tells of nothing else.
   void take(const CurvePoints& curve);
 
   /// The most that copies of the curve say which are moved aside in space, by 5 px in four
   /// directions [nat]: what texture or a neighbour says that is there.
-  double beside(const CurvePoints& curve) const;
+  double beside(const CurvePoints& curve, const std::vector<Window>& windows = {}) const;
 
  private:
   const EdgeWorld& world_;

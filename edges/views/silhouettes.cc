@@ -17,14 +17,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kCells = 64;         // along the longest side of the region
-constexpr double kEndPx = 1;       // [px] of shrunk pictures by which cuts miss the object's end
-constexpr double kBeyond = 0.1;    // of the region's longest side, that may be the object's, too
+constexpr int kCells = 64;       // along the longest side of the region
+constexpr double kEndPx = 1;     // [px] of shrunk pictures by which cuts miss the object's end
+constexpr double kBeyond = 0.1;  // of the region's longest side, that may be the object's, too
 constexpr int kCoarseRounds = 2, kRounds = 3;  // of colours and cuts
-constexpr int kAgainPx = 3;        // [px] around what most views hold, where it may be, too
+constexpr int kAgainPx = 3;  // [px] around what most views hold, where it may be, too
 constexpr int kFewestViews = 3;
-constexpr double kLookupPx = 4;    // as the detectors'
-constexpr int kMinChain = 3;       // edgels of a chain that leaves the silhouette
+constexpr double kLookupPx = 4;  // as the detectors'
+constexpr int kMinChain = 3;     // edgels of a chain that leaves the silhouette
 
 // A view of a picture that is some times smaller.
 struct Shrunk {
@@ -163,8 +163,7 @@ Held held_by_most(const std::vector<View>& views, const std::vector<Cut>& cuts,
       if (!Shrunk{views[v], cuts[v].denominator}.pixel(p, &q, &depth)) continue;
       const int x = int(std::lround(q.x())), y = int(std::lround(q.y()));
       if (x < 0 || y < 0 || x >= cuts[v].mask.cols || y >= cuts[v].mask.rows) continue;
-      const double cell_px =
-          out.cell * views[v].camera.fx / (depth * cuts[v].denominator);
+      const double cell_px = out.cell * views[v].camera.fx / (depth * cuts[v].denominator);
       ++asked;
       no += cuts[v].distance(y, x) > kEndPx + 0.5 * cell_px;
     }
@@ -182,8 +181,7 @@ cv::Mat1b covered(const Shrunk& shrunk, const Held& held) {
     Vector2d q;
     double depth;
     if (!shrunk.pixel(p, &q, &depth)) continue;
-    const double half =
-        0.87 * held.cell * shrunk.view.camera.fx / (depth * shrunk.denominator);
+    const double half = 0.87 * held.cell * shrunk.view.camera.fx / (depth * shrunk.denominator);
     const cv::Rect square =
         cv::Rect(cv::Point(int(std::floor(q.x() - half)), int(std::floor(q.y() - half))),
                  cv::Point(int(std::ceil(q.x() + half)) + 1, int(std::ceil(q.y() + half)) + 1)) &
@@ -326,8 +324,7 @@ EdgeWorld with_silhouettes(EdgeWorld world, const Silhouettes& found) {
 #pragma omp parallel for schedule(dynamic, 1)
   for (int v = 0; v < int(world.views.size()); ++v) {
     if (found.mask[v].empty()) continue;
-    world.maps[v] =
-        on_silhouette(world.maps[v], world.views[v], found.mask[v], found.slack_px[v]);
+    world.maps[v] = on_silhouette(world.maps[v], world.views[v], found.mask[v], found.slack_px[v]);
     world.plane_normal[v] = plane_normals(world.views[v], world.maps[v]);
   }
   world.object = found.region;

@@ -10,7 +10,7 @@
 namespace sketchsplat {
 
 struct SilhouetteOptions {
-  double object_px = 180;     ///< [px] of the object's longer side in the pictures that are cut
+  double object_px = 180;      ///< [px] of the object's longer side in the pictures that are cut
   double most_outvoted = 0.1;  ///< share of the views that may leave out what others hold
   /// Share of a silhouette that all views together do not hold, and the other way round, up to
   /// which its view is trusted.
@@ -19,10 +19,10 @@ struct SilhouetteOptions {
 };
 
 /// Silhouettes of one rigid object are consistent: what most views hold, projected, is each of
-/// them. Pictures that are cut by colours alone (cut_out.h) need not be: that they are is what tells
-/// right ones.
+/// them. Pictures that are cut by colours alone (cut_out.h) need not be: that they are is what
+/// tells right ones.
 struct Silhouettes {
-  /// Per view, in pixels of the image: 1 on the object and at most `slack_px` around it, empty
+  /// Per view, in pixels of the image: 1 on the object and about `slack_px` around it, empty
   /// where nothing can be trusted. No views at all where too few can.
   std::vector<Image<uint8_t>> mask;
   std::vector<double> slack_px;  ///< per view
@@ -31,10 +31,10 @@ struct Silhouettes {
   double agreement = 0;          ///< median over the views, share of silhouettes that all hold
 };
 
-/// Of an object whose edges lie in `region`, as far as they are known (its box, and what stands on the
-/// table within its outline), and no farther than a tenth of its size beyond.
-/// `read`: the picture of a view, shrunk by a whole denominator of at least 1; called from several
-/// threads, it may throw InputError: that view is not trusted.
+/// Of an object whose edges lie in `region`, as far as they are known (its box, and what stands on
+/// the table within its outline), and no farther than a tenth of its size beyond. `read`: the
+/// picture of a view, shrunk by a whole denominator of at least 1; called from several threads, it
+/// may throw InputError: that view is not trusted.
 Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion& region,
                              const std::function<Picture(int view, int denominator)>& read,
                              const SilhouetteOptions& options = {});

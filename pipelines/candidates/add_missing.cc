@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "edges/contrast/alarm_threshold.h"
 #include "edges/views/rim.h"
@@ -28,7 +30,9 @@ constexpr double kNearAsidePx = 6;    // [px] of a copy that shows what is no ed
 constexpr int kAsides = 7;
 constexpr int kPasses = 3;
 constexpr int kMostCandidates = 8000;  // a sketch that leads to expect more tells nothing
-constexpr double kBeside = 0.4;  // of the nats of a candidate that copies aside may get
+constexpr double kGroup = 2;           // times the least nats of one, that all of a group must have
+constexpr double kAgainst = -2;        // [nat] of one of a group that is not there after all
+constexpr double kBeside = 0.4;        // of the nats of a candidate that copies aside may get
 
 ContrastJudge judge_beside(const Sketch& sketch, const EdgeWorld& world,
                            const ContrastOptions& options) {
@@ -70,10 +74,11 @@ std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& wor
                                       const KnownCurves& known, const ContrastJudge& judge,
                                       int* depths) {
   const std::vector<Levels> levels = find_levels(sketch, kLevelPx * world.footprint);
-  std::vector<Candidate> out = level_copies(sketch, levels);
+  // Of what several tell the first counts: that which knows from where it is seen.
+  std::vector<Candidate> out = depth_copies(sketch, levels, known, judge, world, depths);
   for (const std::vector<Candidate>& more :
-       {mirror_copies(sketch, levels), circle_patterns(sketch, kLevelPx * world.footprint),
-        depth_copies(sketch, levels, known, judge, world, depths)})
+       {level_copies(sketch, levels), mirror_copies(sketch, levels),
+        circle_patterns(sketch, kLevelPx * world.footprint)})
     out.insert(out.end(), more.begin(), more.end());
   return out;
 }
@@ -106,6 +111,11 @@ bool is_same(const CurvePoints& a, const CurvePoints& b, double reach) {
          ((first - b.position.col(0)).norm() < reach || (last - b.position.col(0)).norm() < reach);
 }
 
+const std::vector<Window>& windows_of(const Candidate& c) {
+  static const std::vector<Window> none;
+  return c.windows ? *c.windows : none;
+}
+
 Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge& judge) {
   const double px = world.footprint;
   const KnownCurves known(sketch, px, kKnownPx * px);
@@ -125,58 +135,119 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
   out.tests += n;
   out.nats.resize(n);
   out.nulls.assign(n, -INFINITY);
-  const auto nats = [&](const CurvePoints& points) {
+  const auto nats = [&](const CurvePoints& points, const std::vector<Window>& windows) {
     const int every = std::max(kHaste, int(points.position.cols()) / kHastyPoints);
-    const double hasty = judge.judge(points, every).nats;
-    return hasty > kPromise ? judge.judge(points).nats : hasty;
+    const double hasty = judge.judge(points, every, windows).nats;
+    return hasty > kPromise ? judge.judge(points, 1, windows).nats : hasty;
   };
 #pragma omp parallel for schedule(dynamic, 4)
   for (int i = 0; i < n; ++i) {
-    out.nats[i] = nats(out.points[i]);
+    const std::vector<Window>& windows = windows_of(out.candidates[i]);
+    out.nats[i] = nats(out.points[i], windows);
     const CurvePoints aside = moved_aside(out.points[i], i, px);
-    if (known.share(aside) <= kKnownShare) out.nulls[i] = nats(aside);
+    if (known.share(aside) <= kKnownShare) out.nulls[i] = nats(aside, windows);
   }
   out.nulls.erase(std::remove(out.nulls.begin(), out.nulls.end(), -INFINITY), out.nulls.end());
   return out;
 }
 
-MissingEdges one_pass(const Sketch& sketch, const EdgeWorld& world, const MissingOptions& options) {
-  const double px = world.footprint;
-  ContrastJudge judge = judge_beside(sketch, world, options.contrast);
-  const Judged all = judged(sketch, world, judge);
-  const double least = alarm_threshold(all.nulls, all.tests, options.false_strokes / kPasses);
-  std::vector<int> order(all.candidates.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return all.nats[a] > all.nats[b]; });
-  MissingEdges out{sketch, {}, all.tests};
-  Sketch added;
-  for (const int i : order) {
-    if (!(all.nats[i] > least)) break;
-    const CurvePoints& points = all.points[i];
-    if (KnownCurves(added, px, kKnownPx * px).share(points) > kKnownShare) continue;
-    const ContrastEvidence e = judge.judge(points);
-    if (!(e.nats > least) || !all_of_it_shows(e, options.contrast.accident) ||
-        judge.beside(points) > kBeside * e.nats || is_rim(world, points, least))
-      continue;
-    judge.take(points);
-    append(all.candidates[i], &added);
-    out.nats.push_back(e.nats);
+// One pass over all candidates.
+class Pass {
+ public:
+  Pass(const Sketch& sketch, const EdgeWorld& world, const MissingOptions& options)
+      : sketch_(sketch),
+        world_(world),
+        options_(options),
+        judge_(judge_beside(sketch, world, options.contrast)),
+        all_(judged(sketch, world, judge_)),
+        least_(alarm_threshold(all_.nulls, all_.tests, options.false_strokes / kPasses)) {}
+
+  MissingEdges run() {
+    out_ = {sketch_, {}, {}, all_.tests};
+    std::map<int, std::vector<int>> groups;
+    for (int i = 0; i < int(all_.candidates.size()); ++i)
+      if (all_.candidates[i].group >= 0) groups[all_.candidates[i].group].push_back(i);
+    for (const auto& [group, members] : groups)
+      if (members.size() > 1) add_group(members);
+    std::vector<int> order(all_.candidates.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return all_.nats[a] > all_.nats[b]; });
+    for (const int i : order) {
+      if (!(all_.nats[i] > least_)) break;
+      add_single(i);
+    }
+    append_strokes(added_, &out_.sketch);
+    return std::move(out_);
   }
-  append_strokes(added, &out.sketch);
-  return out;
-}
+
+ private:
+  bool is_known(const CurvePoints& points) const {
+    const double px = world_.footprint;
+    return KnownCurves(added_, px, kKnownPx * px).share(points) > kKnownShare;
+  }
+
+  void add(int i, double nats, bool group) {
+    judge_.take(all_.points[i]);
+    append(all_.candidates[i], &added_);
+    out_.nats.push_back(nats);
+    out_.group.push_back(group);
+  }
+
+  // What one view shows by accident it may show along several of them: they count as two.
+  void add_group(const std::vector<int>& members) {
+    double sum = 0;
+    for (const int i : members) sum += all_.nats[i];
+    if (!(sum > kGroup * least_)) return;
+    double beside = 0;
+    int shown = 0;
+    std::vector<double> nats;
+    for (const int i : members) {
+      const std::vector<Window>& windows = windows_of(all_.candidates[i]);
+      nats.push_back(judge_.judge(all_.points[i], 1, windows).nats);
+      shown += nats.back() > 0;
+      beside += judge_.beside(all_.points[i], windows);
+    }
+    sum = std::accumulate(nats.begin(), nats.end(), 0.0);
+    if (!(sum > kGroup * least_) || beside > kBeside * sum ||
+        shown < kShownShare * double(members.size()))
+      return;
+    for (size_t k = 0; k < members.size(); ++k)
+      if (nats[k] > kAgainst && !is_known(all_.points[members[k]])) add(members[k], nats[k], true);
+  }
+
+  void add_single(int i) {
+    const CurvePoints& points = all_.points[i];
+    if (is_known(points)) return;
+    const std::vector<Window>& windows = windows_of(all_.candidates[i]);
+    const ContrastEvidence e = judge_.judge(points, 1, windows);
+    if (!(e.nats > least_) || !all_of_it_shows(e, options_.contrast.accident) ||
+        judge_.beside(points, windows) > kBeside * e.nats || is_rim(world_, points, least_))
+      return;
+    add(i, e.nats, false);
+  }
+
+  const Sketch& sketch_;
+  const EdgeWorld& world_;
+  const MissingOptions& options_;
+  ContrastJudge judge_;
+  Judged all_;
+  double least_;
+  MissingEdges out_;
+  Sketch added_;
+};
 
 }  // namespace
 
 MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
                          const MissingOptions& options) {
-  MissingEdges out{sketch, {}, 0};
+  MissingEdges out{sketch, {}, {}, 0};
   // What was found leads to expect more: the other rim of a hole that is part of a pattern.
   for (int pass = 0; pass < kPasses; ++pass) {
-    const MissingEdges more = one_pass(out.sketch, world, options);
+    const MissingEdges more = Pass(out.sketch, world, options).run();
     out.sketch = more.sketch;
     out.nats.insert(out.nats.end(), more.nats.begin(), more.nats.end());
+    out.group.insert(out.group.end(), more.group.begin(), more.group.end());
     out.candidates += more.candidates;
     if (more.nats.empty()) break;
   }

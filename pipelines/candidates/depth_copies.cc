@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <utility>
+
+#include "sketches/curve/curve.h"
 
 namespace sketchsplat {
 namespace {
@@ -16,6 +20,10 @@ constexpr double kLeastNats = 1;    // of a depth that is worth a look
 constexpr double kCopyShare = 0.6;  // of a loop that is known at another level
 constexpr double kInner = 0.8;      // of the size of its level: larger loops bound the part
 constexpr int kMostLoops = 10;
+constexpr int kSides = 24;           // of a window, per stroke of the loop
+constexpr double kCornerSine = 0.2;  // strokes that meet at less go on smoothly
+
+using Eigen::Vector3d;
 
 // Closed strokes, and strokes of a level that hang together with no loose end.
 std::vector<std::vector<int>> closed_loops(const Sketch& s, const std::vector<int>& strokes) {
@@ -56,7 +64,7 @@ CurvePoints points_of(const Sketch& s, const std::vector<int>& loop, double px) 
   return out;
 }
 
-CurvePoints shifted(CurvePoints points, const Eigen::Vector3d& by) {
+CurvePoints shifted(CurvePoints points, const Vector3d& by) {
   points.position.colwise() += by;
   return points;
 }
@@ -66,33 +74,98 @@ double size_of(const CurvePoints& points) {
   return (points.position.rowwise().maxCoeff() - points.position.rowwise().minCoeff()).norm();
 }
 
-bool has_copy(const CurvePoints& loop, const Levels& l, size_t own, const KnownCurves& known) {
-  for (size_t to = 0; to < l.height.size(); ++to)
-    if (to != own &&
+// The nearest other level in which a copy of the loop is known; -1 without.
+int copy_of(const CurvePoints& loop, const Levels& l, size_t own, const KnownCurves& known) {
+  int out = -1;
+  const auto far = [&](int to) { return std::abs(l.height[to] - l.height[own]); };
+  for (int to = 0; to < int(l.height.size()); ++to)
+    if (to != int(own) && (out < 0 || far(to) < far(out)) &&
         known.share(shifted(loop, (l.height[to] - l.height[own]) * l.normal)) > kCopyShare)
-      return true;
-  return false;
+      out = to;
+  return out;
 }
 
-// The depth at which the judge finds most; 0 if none is worth a look.
-double best_depth(const CurvePoints& loop, const Eigen::Vector3d& normal, double low, double high,
-                  const ContrastJudge& judge, double px, int* depths) {
+// What is seen through the loop, and through its copy at a distance `by`, if there is one.
+std::shared_ptr<const std::vector<Window>> windows_at(const Sketch& s, const std::vector<int>& loop,
+                                                      const Vector3d& normal, const Vector3d& by) {
+  std::vector<Eigen::Matrix3Xd> curves, copies;
+  for (const int i : loop) {
+    Eigen::Matrix3Xd c(3, kSides + 1);
+    Vector3d d;
+    for (int k = 0; k <= kSides; ++k) {
+      Vector3d p;
+      evaluate_stroke(s, i, double(k) / kSides, &p, &d);
+      c.col(k) = p;
+    }
+    curves.push_back(c);
+    copies.push_back(c.colwise() + by);
+  }
+  std::vector<Window> out = {Window(normal, curves)};
+  if (by.norm() > 0) out.emplace_back(normal, copies);
+  return std::make_shared<const std::vector<Window>>(std::move(out));
+}
+
+// Nodes in which two strokes of a loop meet in an angle.
+std::vector<int> corners_of(const Sketch& s, const std::vector<int>& loop) {
+  std::map<int, Vector3d> way;  // into one of them
+  std::vector<int> out;
+  for (const int i : loop) {
+    if (is_closed(s.strokes[i].kind)) continue;
+    for (const bool begin : {true, false}) {
+      Vector3d p, d;
+      evaluate_stroke(s, i, begin ? 0 : 1, &p, &d);
+      d = (begin ? d : Vector3d(-d)).normalized();
+      const int node = begin ? s.strokes[i].begin : s.strokes[i].end;
+      const auto [other, first] = way.emplace(node, d);
+      if (!first && other->second.cross(d).norm() > kCornerSine) out.push_back(node);
+    }
+  }
+  return out;
+}
+
+// Edges in which the walls of a pocket or hole meet, from the corners of its rim on.
+void add_walls(const Sketch& s, const std::vector<int>& loop, const Vector3d& by,
+               const std::shared_ptr<const std::vector<Window>>& windows, int group,
+               std::vector<Candidate>* out) {
+  for (const int node : corners_of(s, loop)) {
+    Candidate c;
+    c.kind = StrokeKind::kLine;
+    c.curve.count = 2;
+    c.curve.p[0] = s.nodes.col(node);
+    c.curve.p[1] = s.nodes.col(node) + by;
+    c.windows = windows;
+    c.group = group;
+    out->push_back(c);
+  }
+}
+
+struct Depth {
+  double depth = 0;  // along the normal, world units; 0: none is worth a look
+  double nats = kLeastNats;
+};
+
+// The depth at which the judge finds most.
+Depth best_depth(const CurvePoints& loop, const Vector3d& normal, double low, double high,
+                 const ContrastJudge& judge, const std::vector<Window>& windows, double px,
+                 int* depths) {
   const int every = std::max(2, int(loop.position.cols()) / kPoints);
   std::vector<double> depth;
   for (double d = low; d <= high; d += kStepPx * px)
     if (std::abs(d) > kNearPx * px) depth.push_back(d);
   *depths += int(depth.size());
+  const auto nats_at = [&](double d) {
+    return judge.judge(shifted(loop, d * normal), every, windows).nats;
+  };
   std::vector<double> nats(depth.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int k = 0; k < int(depth.size()); ++k)
-    nats[k] = judge.judge(shifted(loop, depth[k] * normal), every).nats;
+  for (int k = 0; k < int(depth.size()); ++k) nats[k] = nats_at(depth[k]);
   const auto most = std::max_element(nats.begin(), nats.end());
-  if (most == nats.end() || *most < kLeastNats) return 0;
-  double best = depth[most - nats.begin()], value = *most;
+  if (most == nats.end() || *most < kLeastNats) return {};
+  const double coarse = depth[most - nats.begin()];
+  Depth best{coarse, *most};
   for (const double fine : {-1.5, -1.0, -0.5, 0.5, 1.0, 1.5}) {
-    const double d = depth[most - nats.begin()] + fine * px;
-    const double here = judge.judge(shifted(loop, d * normal), every).nats;
-    if (here > value) best = d, value = here;
+    const double here = nats_at(coarse + fine * px);
+    if (here > best.nats) best = {coarse + fine * px, here};
   }
   return best;
 }
@@ -103,21 +176,38 @@ std::vector<Candidate> depth_copies(const Sketch& sketch, const std::vector<Leve
                                     const KnownCurves& known, const ContrastJudge& judge,
                                     const EdgeWorld& world, int* depths) {
   std::vector<Candidate> out;
-  int loops = 0;
+  int loops = 0, group = 0;
+  const double px = world.footprint;
   for (const Levels& l : levels)
     for (size_t own = 0; own < l.height.size() && l.height.size() > 1; ++own) {
-      const double whole = size_of(points_of(sketch, l.strokes[own], world.footprint));
+      const double whole = size_of(points_of(sketch, l.strokes[own], px));
       for (const std::vector<int>& loop : closed_loops(sketch, l.strokes[own])) {
-        const CurvePoints points = points_of(sketch, loop, world.footprint);
+        const CurvePoints points = points_of(sketch, loop, px);
         if (size_of(points) > kInner * whole) continue;
-        if (has_copy(points, l, own, known)) continue;
+        const int copy = copy_of(points, l, own, known);
+        if (copy >= 0) {
+          const Vector3d by = (l.height[copy] - l.height[own]) * l.normal;
+          if (copy > int(own))
+            add_walls(sketch, loop, by, windows_at(sketch, loop, l.normal, by), group++, &out);
+          continue;
+        }
         if (++loops > kMostLoops) return out;
-        const double d =
-            best_depth(points, l.normal, l.height.front() - l.height[own],
-                       l.height.back() - l.height[own], judge, world.footprint, depths);
-        if (d == 0) continue;
-        for (const int i : loop)
-          out.push_back(moved({sketch.strokes[i].kind, control_points(sketch, i)}, d * l.normal));
+        auto windows = windows_at(sketch, loop, l.normal, Vector3d::Zero());
+        const double low = l.height.front() - l.height[own], high = l.height.back() - l.height[own];
+        Depth best = best_depth(points, l.normal, low, high, judge, {}, px, depths);
+        const Depth seen = best_depth(points, l.normal, low, high, judge, *windows, px, depths);
+        if (seen.nats > best.nats)
+          best = seen;
+        else
+          windows = nullptr;
+        if (best.depth == 0) continue;
+        const Vector3d by = best.depth * l.normal;
+        for (const int i : loop) {
+          out.push_back(moved({sketch.strokes[i].kind, control_points(sketch, i)}, by));
+          out.back().windows = windows;
+          if (windows) out.back().group = group;
+        }
+        if (windows) add_walls(sketch, loop, by, windows, group++, &out);
       }
     }
   return out;

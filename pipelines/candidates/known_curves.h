@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "datasets/neighbours/kd_tree.h"
+#include "edges/contrast/window.h"
 #include "edges/views/match.h"
 #include "sketches/graph/sketch.h"
 
@@ -12,7 +14,10 @@ namespace sketchsplat {
 /// A curve that may be an edge, with control points of its own.
 struct Candidate {
   StrokeKind kind = StrokeKind::kLine;
-  ControlPoints curve;
+  ControlPoints curve = {};
+  /// Openings through which views see it, if it is in a pocket or a hole; null: nobody knows.
+  std::shared_ptr<const std::vector<Window>> windows = nullptr;
+  int group = -1;  ///< of candidates that are all there or none, as of one pocket; -1: alone
 };
 
 /// Points along a candidate, at most `spacing` (world units) apart, at least two.

@@ -71,16 +71,17 @@ Evidence unseen() {
 
 // Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
 // seen where they are: with it anything may have come that edgels do not bear out, and the borders
-// of rounds.
-Sketch without_improbable(Sketch sketch, int first, const EdgeWorld& world,
-                          const ReconstructOptions& options, int* left) {
+// of rounds. Those of a group bear one another out.
+Sketch without_improbable(Sketch sketch, int first, const std::vector<bool>& group,
+                          const EdgeWorld& world, const ReconstructOptions& options, int* left) {
   const StrokeObservation o = with_evidence(world, options, &sketch);
   record_confidence(stroke_features(sketch, world, o), &sketch);
   const Observation wide = observe_rounds(sketch, world, 0);
   const RoundJudge rounds(world, wide, options.select.round);
   std::vector<bool> keep(sketch.size(), true);
   for (int s = first; s < sketch.size(); ++s)
-    keep[s] = sketch.evidence[s].confidence >= kProbable && rounds.nats(s, nullptr) <= 0;
+    keep[s] = group[s - first] ||
+              (sketch.evidence[s].confidence >= kProbable && rounds.nats(s, nullptr) <= 0);
   *left = int(std::count(keep.begin() + first, keep.end(), true));
   return keep_strokes(sketch, keep);
 }
@@ -148,7 +149,7 @@ Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
   const Sketch probable = added == 0
                               ? sketch
                               : without_improbable(missing.sketch, missing.sketch.size() - added,
-                                                   world, options, &added);
+                                                   missing.group, world, options, &added);
   report->counts.push_back({"candidates", double(missing.candidates)});
   report->counts.push_back({"strokes_missing", double(added)});
   stage.result(std::to_string(added) + " of " + std::to_string(missing.candidates) +

@@ -141,7 +141,7 @@ void imply(double tolerance, double slide, Completed* all) {
 }
 
 Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours, double tolerance,
-                   double slide) {
+                   double slide, int most_surfaces) {
   Completed out;
   Sketch cut = seen;
   cut_overlaps(tolerance, &cut);
@@ -153,6 +153,7 @@ Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours,
   out.origin.assign(out.seen.size(), EdgeOrigin::kSeen);
   out.polylines = polylines_of(out.sketch, kPieces);
   out.surfaces = find_surfaces(out.sketch, out.polylines, tolerance);
+  if (int(out.surfaces.size()) > most_surfaces) return out;
   RoundCandidates round =
       round_candidates(out.sketch, out.polylines, out.surfaces, contours, tolerance);
   out.rims = int(round.rims.size());

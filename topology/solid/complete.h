@@ -40,8 +40,9 @@ struct Completed {
 /// Adds edges that surfaces imply, and finds all surfaces, until there are no more. `tolerance`: of
 /// a stroke from the surface that it lies on, world units.
 void imply(double tolerance, double slide, Completed* all);
+/// Where the strokes alone ask for more than `most_surfaces`, nothing else is added to these.
 Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours, double tolerance,
-                   double slide);
+                   double slide, int most_surfaces);
 
 /// Copies closed loops of strokes in a plane, all of which are `left` (per stroke that is seen: it
 /// bounds no face that closes), along the normal of the plane, to the depths that other such

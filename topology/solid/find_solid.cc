@@ -52,7 +52,7 @@ class Search {
         slide_(slide),
         options_(options),
         evidence_(evidence),
-        all_(complete(sketch, evidence.contours, tolerance, slide)) {}
+        all_(complete(sketch, evidence.contours, tolerance, slide, options.most_surfaces)) {}
 
   SolidSearch plain() { return run(std::vector<bool>(all_.seen.size())); }
 

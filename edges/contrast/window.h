@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace sketchsplat {
+
+/// An opening in a plane, a closed loop of curves, through which views see what lies behind it: the
+/// rim of a pocket or of a hole. What lies beside it hides everything behind.
+class Window {
+ public:
+  /// `curves`: 3 x n points along each curve of the loop, in any order and direction, joined in
+  /// common ends; all near one plane across `normal` (of any length).
+  Window(const Eigen::Vector3d& normal, const std::vector<Eigen::Matrix3Xd>& curves);
+
+  /// Does the line of sight from a point to a camera pass through the opening? Not if both are on
+  /// one side of it.
+  bool lets_through(const Eigen::Vector3d& point, const Eigen::Vector3d& camera) const;
+
+ private:
+  Eigen::Vector3d normal_, middle_;
+  Eigen::Matrix<double, 2, 3> frame_;
+  std::vector<Eigen::Vector4d> sides_;  // in the plane: from x, y to x, y
+};
+
+/// Does one of them?
+bool any_lets_through(const std::vector<Window>& windows, const Eigen::Vector3d& point,
+                      const Eigen::Vector3d& camera);
+
+}  // namespace sketchsplat
