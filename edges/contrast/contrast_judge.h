@@ -40,8 +40,8 @@ class ContrastJudge {
                 const std::vector<std::vector<char>>& explained, const ContrastOptions& options);
 
   /// `curve`: one curve, points about a pixel apart. `every`: of which points are read, for haste.
-  /// `windows`: openings through one of which a view must see a piece of the curve to tell of it, as
-  /// the curve is in a pocket or a hole; none: nobody knows from where it is seen.
+  /// `windows`: openings through one of which a view must see a piece of the curve to tell of it,
+  /// as the curve is in a pocket or a hole; none: nobody knows from where it is seen.
   ContrastEvidence judge(const CurvePoints& curve, int every = 1,
                          const std::vector<Window>& windows = {}) const;
 

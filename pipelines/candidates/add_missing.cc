@@ -33,6 +33,7 @@ constexpr int kMostCandidates = 8000;  // a sketch that leads to expect more tel
 constexpr double kGroup = 2;           // times the least nats of one, that all of a group must have
 constexpr double kAgainst = -2;        // [nat] of one of a group that is not there after all
 constexpr double kBeside = 0.4;        // of the nats of a candidate that copies aside may get
+constexpr double kGroupBeside = 0.6;   // of a group: short edges, moved aside, meet neighbours
 
 ContrastJudge judge_beside(const Sketch& sketch, const EdgeWorld& world,
                            const ContrastOptions& options) {
@@ -209,7 +210,7 @@ class Pass {
       beside += judge_.beside(all_.points[i], windows);
     }
     sum = std::accumulate(nats.begin(), nats.end(), 0.0);
-    if (!(sum > kGroup * least_) || beside > kBeside * sum ||
+    if (!(sum > kGroup * least_) || beside > kGroupBeside * sum ||
         shown < kShownShare * double(members.size()))
       return;
     for (size_t k = 0; k < members.size(); ++k)

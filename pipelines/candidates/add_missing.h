@@ -25,8 +25,8 @@ struct MissingEdges {
 /// Adds the edges that the rest of the sketch leads to expect and that the pictures show. A
 /// candidate is added if its likelihood ratio outweighs the number of candidates over the false
 /// strokes that are tolerated, if its pieces are shown, not a part of it alone, and if copies of it
-/// that are moved aside say less: best first, and each takes what it explains from the others. Floor
-/// and walls of a pocket, or the walls of a hole, are there or not, all together.
+/// that are moved aside say less: best first, and each takes what it explains from the others.
+/// Floor and walls of a pocket, or the walls of a hole, are there or not, all together.
 MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
                          const MissingOptions& options);
 

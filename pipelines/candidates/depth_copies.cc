@@ -20,7 +20,8 @@ constexpr double kLeastNats = 1;    // of a depth that is worth a look
 constexpr double kCopyShare = 0.6;  // of a loop that is known at another level
 constexpr double kInner = 0.8;      // of the size of its level: larger loops bound the part
 constexpr int kMostLoops = 10;
-constexpr int kSides = 24;           // of a window, per stroke of the loop
+constexpr double kClearly = 3;  // [nat] more of what is seen from anywhere: then it is no pocket
+constexpr int kSides = 24;      // of a window, per stroke of the loop
 constexpr double kCornerSine = 0.2;  // strokes that meet at less go on smoothly
 
 using Eigen::Vector3d;
@@ -196,7 +197,7 @@ std::vector<Candidate> depth_copies(const Sketch& sketch, const std::vector<Leve
         const double low = l.height.front() - l.height[own], high = l.height.back() - l.height[own];
         Depth best = best_depth(points, l.normal, low, high, judge, {}, px, depths);
         const Depth seen = best_depth(points, l.normal, low, high, judge, *windows, px, depths);
-        if (seen.nats > best.nats)
+        if (seen.depth != 0 && seen.nats > best.nats - kClearly)
           best = seen;
         else
           windows = nullptr;

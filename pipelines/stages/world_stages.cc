@@ -52,8 +52,8 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector
   return make_edge_world(std::move(views), std::move(maps));
 }
 
-EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options,
-                          RunReport* report, Progress* progress) {
+EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
+                          Progress* progress) {
   if (!options.box.isEmpty()) {
     ObjectRegion region;
     region.box = options.box;
@@ -109,8 +109,9 @@ void detect_on_silhouettes(const Scene& scene, const Detector& detector, const S
 
 }  // namespace
 
-EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world, const ReconstructOptions& options,
-                           RunReport* report, Progress* progress) {
+EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world,
+                           const ReconstructOptions& options, RunReport* report,
+                           Progress* progress) {
   const bool known = world.object.table || (!options.box.isEmpty() && !world.has_masks());
   if (!options.silhouettes || !known) return world;
   Stage stage("silhouettes", 0, report, progress);
