@@ -164,7 +164,7 @@ class Pass {
         least_(alarm_threshold(all_.nulls, all_.tests, options.false_strokes / kPasses)) {}
 
   MissingEdges run() {
-    out_ = {sketch_, {}, {}, all_.tests};
+    out_ = {sketch_, {}, {}, {}, all_.tests};
     std::map<int, std::vector<int>> groups;
     for (int i = 0; i < int(all_.candidates.size()); ++i)
       if (all_.candidates[i].group >= 0) groups[all_.candidates[i].group].push_back(i);
@@ -193,6 +193,13 @@ class Pass {
     append(all_.candidates[i], &added_);
     out_.nats.push_back(nats);
     out_.group.push_back(group);
+    const Candidate& c = all_.candidates[i];
+    if (!group || is_closed(c.kind)) return;
+    for (const Eigen::Vector3d& end : {c.curve.p[0], c.curve.p[c.curve.count - 1]}) {
+      const Eigen::Matrix3Xd& nodes = sketch_.nodes;
+      if ((nodes.colwise() - end).colwise().norm().minCoeff() > world_.footprint)
+        out_.corners.push_back(end);
+    }
   }
 
   // What one view shows by accident it may show along several of them: they count as two.
@@ -242,13 +249,14 @@ class Pass {
 
 MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
                          const MissingOptions& options) {
-  MissingEdges out{sketch, {}, {}, 0};
+  MissingEdges out{sketch, {}, {}, {}, 0};
   // What was found leads to expect more: the other rim of a hole that is part of a pattern.
   for (int pass = 0; pass < kPasses; ++pass) {
     const MissingEdges more = Pass(out.sketch, world, options).run();
     out.sketch = more.sketch;
     out.nats.insert(out.nats.end(), more.nats.begin(), more.nats.end());
     out.group.insert(out.group.end(), more.group.begin(), more.group.end());
+    out.corners.insert(out.corners.end(), more.corners.begin(), more.corners.end());
     out.candidates += more.candidates;
     if (more.nats.empty()) break;
   }

@@ -19,7 +19,8 @@ struct MissingEdges {
   Sketch sketch;             ///< with the strokes that were added, after the others
   std::vector<double> nats;  ///< of each that was added
   std::vector<bool> group;   ///< of each: was it added as one of many that are there or not?
-  int candidates = 0;        ///< that were judged
+  std::vector<Eigen::Vector3d> corners;  ///< where those of groups end, but on known strokes
+  int candidates = 0;                    ///< that were judged
 };
 
 /// Adds the edges that the rest of the sketch leads to expect and that the pictures show. A

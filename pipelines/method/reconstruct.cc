@@ -73,8 +73,8 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   sketch = look_again(sketch, world, targets, last, &report, progress);
   sketch = drop_print(sketch, world, *detector, &report, progress);
   sketch = close_sketch(sketch, world, last, &report);
-  sketch = add_missing_edges(sketch, world, last, &report, progress);
-  FinishedSketch finished = finish_sketch(sketch, world, tags, last, &report, progress);
+  const WithMissing most = add_missing_edges(sketch, world, last, &report, progress);
+  FinishedSketch finished = finish_sketch(most, world, tags, last, &report, progress);
   if (finished.sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   tell_stop(options, &report, progress);

@@ -138,11 +138,12 @@ Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const Reconstr
   return closed.sketch;
 }
 
-Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
-                         const ReconstructOptions& options, RunReport* report, Progress* progress) {
+WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
+                              const ReconstructOptions& options, RunReport* report,
+                              Progress* progress) {
   const bool pictures = std::any_of(world.maps.begin(), world.maps.end(),
                                     [](const EdgelMap& m) { return m.grey != nullptr; });
-  if (!options.missing.on || !pictures || options.deadline.passed()) return sketch;
+  if (!options.missing.on || !pictures || options.deadline.passed()) return {sketch, {}};
   Stage stage("missing", 0, report, progress);
   const MissingEdges missing = add_missing(sketch, world, options.missing);
   int added = int(missing.nats.size());
@@ -154,10 +155,10 @@ Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
   report->counts.push_back({"strokes_missing", double(added)});
   stage.result(std::to_string(added) + " of " + std::to_string(missing.candidates) +
                " candidates stand");
-  if (added == 0) return sketch;
+  if (added == 0) return {sketch, {}};
   CloseOptions close = options.close;
   close.round.least_turn = 2;  // nobody has seen more of them than what was added
-  return close_graph(probable, world, prices(options), close).sketch;
+  return {close_graph(probable, world, prices(options), close).sketch, missing.corners};
 }
 
 PolishOptions last_polish(const ReconstructOptions& options) {
@@ -166,10 +167,26 @@ PolishOptions last_polish(const ReconstructOptions& options) {
   return polish;
 }
 
-FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
+namespace {
+
+// Nodes of `before` at one of the places, which stay there if they have moved far.
+void put_back(const Sketch& before, const std::vector<Eigen::Vector3d>& places, double footprint,
+              Sketch* after) {
+  if (after->nodes.cols() != before.nodes.cols()) return;
+  for (Eigen::Index n = 0; n < before.nodes.cols(); ++n)
+    for (const Eigen::Vector3d& place : places)
+      if ((before.nodes.col(n) - place).norm() < footprint &&
+          (after->nodes.col(n) - place).norm() > footprint)
+        after->nodes.col(n) = place;
+}
+
+}  // namespace
+
+FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
                              const std::vector<TagSquare>& tags, const ReconstructOptions& options,
                              RunReport* report, Progress* progress) {
   Stage stage("polish", 0, report, progress);
+  const Sketch& sketch = all.sketch;
   FinishedSketch out;
   out.sketch = sketch;
   out.snap.asked = options.snap != "none";
@@ -190,6 +207,7 @@ FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
       out.kept = std::move(regular.kept);
     }
   }
+  put_back(sketch, all.corners, world.footprint, &out.sketch);
   smooth_joints(&out.sketch);
   judge_strokes(world, options, {}, &out);
   stage.result(std::to_string(out.sketch.size()) + " strokes");

@@ -75,8 +75,13 @@ Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const Reconstr
 /// Edges added that the others lead to expect and that the pictures show (add_missing.h), if they
 /// are edges more probably than not. Nothing without pictures: other detectors' edgels are of
 /// something else.
-Sketch add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
-                         const ReconstructOptions& options, RunReport* report, Progress* progress);
+struct WithMissing {
+  Sketch sketch;
+  std::vector<Eigen::Vector3d> corners;  ///< in pockets, where copies of rims end (add_missing.h)
+};
+WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
+                              const ReconstructOptions& options, RunReport* report,
+                              Progress* progress);
 
 /// What `snap` did, in the user's words.
 struct SnapOutcome {
@@ -100,9 +105,10 @@ struct FinishedSketch {
 /// As the options say, but that what is nearly one curve becomes one.
 PolishOptions last_polish(const ReconstructOptions& options);
 
-/// Last polish on the edgels, regularities, standard lengths, and the evidence. `tags`: that were
-/// measured, for the scale.
-FinishedSketch finish_sketch(const Sketch& sketch, const EdgeWorld& world,
+/// Last polish on the edgels, regularities, standard lengths, and the evidence. Corners in pockets
+/// that move by more than a pixel go back: few views see them, and others what hides them. `tags`:
+/// that were measured, for the scale.
+FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
                              const std::vector<TagSquare>& tags, const ReconstructOptions& options,
                              RunReport* report, Progress* progress);
 

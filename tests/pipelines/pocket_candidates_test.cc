@@ -97,6 +97,8 @@ TEST(PocketCandidates, FloorAndWallsAreFoundWhereViewsSeeThemThroughTheRim) {
     }
     (high > -px ? walls : floor) += 1;
   }
+  ASSERT_GE(missing.corners.size(), 4u);
+  for (const Vector3d& p : missing.corners) EXPECT_NEAR(p.z(), -kDepth, 2 * px);
   EXPECT_EQ(floor, 4);
   EXPECT_EQ(walls, 4);
   EXPECT_EQ(std::count(missing.group.begin(), missing.group.end(), true),

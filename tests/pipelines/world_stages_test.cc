@@ -35,8 +35,9 @@ size_t edgels_of(const EdgeWorld& world) {
 
 TEST(WorldStages, AWorldWithMasksIsLeftAsItIs) {
   const EdgeWorld world = world_of(true);
+  const ReconstructOptions options;
   RunReport report;
-  const EdgeWorld near = focus_on_object(world, {}, &report, nullptr);
+  const EdgeWorld near = focus_on_object(world, options, &report, nullptr);
   EXPECT_EQ(edgels_of(near), edgels_of(world));
   EXPECT_TRUE(near.bounds.isApprox(world.bounds));
   EXPECT_TRUE(report.stages.empty()) << "nothing was looked for";
@@ -54,6 +55,23 @@ TEST(WorldStages, ABoxOfTheUserHoldsAllThatIsLifted) {
   for (const EdgePoint& p : points) EXPECT_TRUE(options.box.contains(p.position));
   ASSERT_FALSE(report.counts.empty());
   EXPECT_EQ(report.counts.back().second, double(points.size()));
+}
+
+// What other views show beside a corner that few see pulls at it.
+TEST(WorldStages, CornersInPocketsDoNotMoveFarFromWhereTheRimHasThem) {
+  const EdgeWorld world = world_of(true);
+  const Vector3d corner(0.1, 0.35, 0.35), stated = corner + Vector3d(0, 0, 2.2 * world.footprint);
+  Sketch sketch;
+  const int a = sketch.add_node(stated), b = sketch.add_node({0.4, 0.35, 0.35});
+  sketch.add_stroke(StrokeKind::kLine, a, b, {});
+  ReconstructOptions options;
+  RunReport report;
+  const Sketch free = finish_sketch({sketch, {}}, world, {}, options, &report, nullptr).sketch;
+  EXPECT_NEAR(free.nodes(2, 0), corner.z(), 0.3 * world.footprint) << "it may slide along";
+  const Sketch held =
+      finish_sketch({sketch, {stated}}, world, {}, options, &report, nullptr).sketch;
+  EXPECT_LT((held.nodes.col(0) - stated).norm(), 1e-12);
+  EXPECT_LT((held.nodes.col(1) - free.nodes.col(1)).norm(), 1e-12) << "others are free";
 }
 
 TEST(WorldStages, WhereNoViewsAgreeThereIsTooLittle) {
