@@ -284,6 +284,7 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   std::vector<Vector3d> inside;
   for (const Vector3d& p : points)
     if (table->signedDistance(p) > region.above && is_inside(region.outline, region.frame * p)) {
+      region.edges.push_back(p);
       inside.push_back(p);
       inside.push_back(table->projection(p));  // it stands there, whether that is seen or not
     }

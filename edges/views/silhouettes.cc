@@ -2,9 +2,11 @@
 #include "edges/views/silhouettes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "datasets/types/errors.h"
 #include "datasets/types/median.h"
@@ -174,6 +176,24 @@ Held held_by_most(const std::vector<View>& views, const std::vector<Cut>& cuts,
   return out;
 }
 
+// Share of the points that lie in a held cell or beside one.
+double share_held(const std::vector<Vector3d>& points, const Held& held, const Vector3d& low) {
+  using Cell = std::array<int, 3>;
+  const auto cell_of = [&](const Vector3d& p) {
+    const Eigen::Array3d c = ((p - low) / held.cell).array().floor();
+    return Cell{int(c.x()), int(c.y()), int(c.z())};
+  };
+  std::set<Cell> cells;
+  for (const Vector3d& p : held.places) {
+    const Cell c = cell_of(p);
+    for (int k = 0; k < 27; ++k)
+      cells.insert({c[0] + k / 9 - 1, c[1] + k / 3 % 3 - 1, c[2] + k % 3 - 1});
+  }
+  const auto in = [&](const Vector3d& p) { return cells.count(cell_of(p)) > 0; };
+  const auto n = std::count_if(points.begin(), points.end(), in);
+  return points.empty() ? 1 : double(n) / double(points.size());
+}
+
 // What the places cover in a picture, as wide as their cells.
 cv::Mat1b covered(const Shrunk& shrunk, const Held& held) {
   cv::Mat1b out = cv::Mat1b::zeros(shrunk.height(), shrunk.width());
@@ -253,6 +273,8 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
   });
   held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
+  // Views may agree to take a face that looks like the table for it: edges tell.
+  if (share_held(edges.edges, held, region.box.min()) < options.least_edges) return out;
   out.region = region_around(held.places, 2 * held.cell, edges);
   out.mask.resize(n);
   out.slack_px.assign(n, 0);

@@ -15,6 +15,7 @@ struct SilhouetteOptions {
   /// Share of a silhouette that all views together do not hold, and the other way round, up to
   /// which its view is trusted.
   double most_disagreement = 0.1;
+  double least_edges = 0.95;    ///< share of the object's known edges that silhouettes must hold
   double least_trusted = 0.75;  ///< share of the views, with fewer of which nothing is known
 };
 

@@ -134,6 +134,20 @@ TEST(Silhouettes, WhereManyPicturesDisagreeNothingIsKnown) {
   EXPECT_TRUE(find_silhouettes(views, ObjectRegion(), none).mask.empty());
 }
 
+TEST(Silhouettes, ThatLeaveOutEdgesOfTheObjectAreNone) {
+  const std::vector<View> views = ring_of_views(10, kMiddle, 3);
+  ObjectRegion region = around_ball();
+  const auto read = [&](int v, int denominator) {
+    return photograph(views[size_t(v)], denominator, true, unsigned(v));
+  };
+  for (int k = 0; k < 20; ++k)
+    region.edges.push_back(kMiddle + 0.95 * kRadius * Vector3d(std::cos(k), std::sin(k), 0));
+  EXPECT_FALSE(find_silhouettes(views, region, read).mask.empty());
+  for (int k = 0; k < 4; ++k)
+    region.edges.push_back(kMiddle + kRadius * Vector3d(1, 1, 1 - 0.1 * k));
+  EXPECT_TRUE(find_silhouettes(views, region, read).mask.empty());
+}
+
 // A circle around the ball is its outline, one inside is not, and one beside it is no edge of it.
 TEST(Silhouettes, StandInForMasks) {
   const std::vector<View> views = ring_of_views(10, kMiddle, 3);
