@@ -37,7 +37,8 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 
 }  // namespace
 
-// The method. Images, no larger than it takes, become edgels, edgels points in space, points
+// The method. Images, no larger than it takes, become edgels: without masks, those of the object
+// that the cameras look at, whose silhouettes are told first. Edgels become points in space, points
 // strokes, and these tell whether the cameras err; then rounds of drawing the strokes into the
 // views, moving them and simplifying the graph, until nothing changes; and the same once more with
 // what is found in the edgels that are left. With siblings of the part, their family's strokes,

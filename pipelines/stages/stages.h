@@ -72,13 +72,15 @@ Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
 Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
                     RunReport* report);
 
-/// Edges added that the others lead to expect and that the pictures show (add_missing.h), if they
-/// are edges more probably than not. Nothing without pictures: other detectors' edgels are of
-/// something else.
+/// A sketch with the edges that were missing.
 struct WithMissing {
   Sketch sketch;
   std::vector<Eigen::Vector3d> corners;  ///< in pockets, where copies of rims end (add_missing.h)
 };
+
+/// Edges added that the others lead to expect and that the pictures show (add_missing.h), if they
+/// are edges more probably than not, or floor and walls that bear one another out. Nothing without
+/// pictures: other detectors' edgels are of something else.
 WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
                               const ReconstructOptions& options, RunReport* report,
                               Progress* progress);
