@@ -2,6 +2,7 @@
 #include "pipelines/adjust/regularize.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include "pipelines/adjust/polish.h"
 #include "pipelines/adjust/regularity_finder.h"
@@ -45,6 +46,26 @@ bool together(const Regularized& r, RelationKind kind, int a, int b) {
         std::count(k.strokes.begin(), k.strokes.end(), b))
       return true;
   return false;
+}
+
+// Eigen would cut products of this size by threads, and with them the order of their sums.
+TEST(Regularize, SumsDoNotFollowTheNumberOfThreads) {
+  Sketch boxes;
+  for (int k = 0; k < 6; ++k) {
+    Sketch one = box();
+    one.nodes = (0.15 * one.nodes).colwise() + 0.15 * Vector3d(k % 3 * 2, k / 3 * 2, k);
+    append_strokes(one, &boxes);
+  }
+  const EdgeWorld world = noisy_world(boxes, 8, 3);
+  const int before = omp_get_max_threads();
+  std::vector<Eigen::Matrix3Xd> found;
+  for (const int threads : {1, 3}) {
+    omp_set_num_threads(threads);
+    found.push_back(both(boxes, world).bound.sketch.nodes);
+    EXPECT_EQ(Eigen::nbThreads(), 1);
+  }
+  omp_set_num_threads(before);
+  EXPECT_EQ(found[0], found[1]);
 }
 
 TEST(Regularize, EdgesOfANoisyBoxBecomeParallelAndComeNearerToTheTruth) {
