@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace sketchsplat {
@@ -51,6 +52,38 @@ struct Match {
   float weight;
 };
 
+// How far at least the nearest edgel is, by cells of a map's window, which stay in the cache where
+// the look-up by pixel does not.
+class FarCells {
+ public:
+  FarCells() = default;
+  explicit FarCells(const EdgelMap& map)
+      : map_(&map),
+        columns_((map.window_width + kSide - 1) / kSide),
+        least_(size_t(columns_) * ((map.window_height + kSide - 1) / kSide), UINT8_MAX) {
+    for (int v = 0; v < map.window_height; ++v)
+      for (int u = 0; u < map.window_width; ++u) {
+        const int far = -map.nearest[size_t(v) * map.window_width + u] - 1;
+        uint8_t& least = least_[size_t(v / kSide) * columns_ + u / kSide];
+        least = uint8_t(std::clamp(far, 0, int(least)));
+      }
+  }
+
+  /// [px] about a pixel within which none holds an edgel; 0: the look-up knows better.
+  int least_px(float x, float y) const {
+    const float u = x + 0.5f - float(map_->x0), v = y + 0.5f - float(map_->y0);
+    if (!(u >= 0 && v >= 0 && u < float(map_->window_width) && v < float(map_->window_height)))
+      return 0;
+    return least_[size_t(int(v) / kSide) * columns_ + int(u) / kSide];
+  }
+
+ private:
+  static constexpr int kSide = 4;
+  const EdgelMap* map_ = nullptr;
+  int columns_ = 0;
+  std::vector<uint8_t> least_;
+};
+
 class Sweeper {
  public:
   Sweeper(const EdgeWorld& world, const LiftOptions& options) : world_(world), options_(options) {
@@ -59,6 +92,9 @@ class Sweeper {
       center_.push_back(v.center_in_world());
     }
     choose_neighbours();
+    far_.resize(world.views.size());
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int v = 0; v < int(far_.size()); ++v) far_[v] = FarCells(world.maps[v]);
   }
 
   // The best point on the ray of an edgel; false if too few views agree. Matches: after refinement.
@@ -84,6 +120,7 @@ class Sweeper {
   std::vector<Matrix34f> projection_;
   std::vector<Eigen::Vector3d> center_;
   std::vector<std::vector<int>> neighbours_;
+  std::vector<FarCells> far_;
 };
 
 void Sweeper::choose_neighbours() {
@@ -114,6 +151,7 @@ bool Sweeper::make_ray(int view, const Edgel& e, Ray* ray) const {
   ray->e1 = (along - ray->e2 * ray->e2.dot(along)).normalized();
   double s1;
   if (!clip(world_.bounds, ray->center, ray->direction, &ray->s0, &s1)) return false;
+  if (!world_.hull.clip(ray->center, ray->direction, &ray->s0, &s1)) return false;
   ray->step = world_.footprint;
   ray->count = int(std::min(4095.0, (s1 - ray->s0) / ray->step)) + 1;
   return true;
@@ -150,7 +188,8 @@ void Sweeper::vote(int view, int index, int other, const Ray& ray,
     const float z = a.z() + k * b.z();
     if (z <= 0) continue;
     const float u = (a.x() + k * b.x()) / z, v = (a.y() + k * b.y()) / z;
-    const int j = map.nearest_or_far(u, v);
+    int j = -far_[other].least_px(u, v) - 1;
+    if (j == -1) j = map.nearest_or_far(u, v);
     if (j < 0) {
       k = step_over(a, b, k, u, v, float(-j - 1)) - 1;
       continue;

@@ -235,10 +235,8 @@ TEST_F(SolidsOfImages, AreNotWrittenUnlessAskedFor) {
 
 TEST_F(Solids, ThatAreRequiredAndNotFoundAreTooLittleAfterAllElseIsWritten) {
   const std::string scene = in_folder("scene"), result = in_folder("result");
-  ASSERT_EQ(run("synthesize ball-stud --views 16 --resolution 240 --outputs none --quiet --out '" +
-                scene + "'")
-                .status,
-            0);
+  const std::string part = "freeform-pad --views 16 --resolution 240 --outputs none";
+  ASSERT_EQ(run("synthesize " + part + " --quiet --out '" + scene + "'").status, 0);
   const Outcome o = run("reconstruct '" + scene + "' --overlays 0 --quiet --solid require --out '" +
                         result + "'");
   EXPECT_EQ(o.status, kTooLittle) << o.err;
