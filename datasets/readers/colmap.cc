@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // COLMAP's folders: a model in sparse/0, sparse or the folder itself; images/; masks/.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <unordered_map>
+#include <utility>
 
 #include "datasets/readers/colmap_model.h"
 #include "datasets/readers/format.h"
@@ -78,19 +80,30 @@ Frame make_frame(const ColmapImage& image, const ColmapCamera& camera) {
   return frame;
 }
 
-void add_points(const ColmapModel& model, const std::unordered_map<std::uint32_t, int>& view_of,
-                Scene* scene) {
+// A view and the features of its image, by the image's id.
+using UsedImages =
+    std::unordered_map<std::uint32_t, std::pair<int, const std::vector<Eigen::Vector2d>*>>;
+
+void add_points(const ColmapModel& model, const UsedImages& used, Scene* scene) {
   for (const ColmapPoint& point : model.points) {
     if (!point.position.allFinite()) continue;
     ScenePoint out;
     out.position = point.position;
-    for (const std::uint32_t image : point.images) {
-      const auto view = view_of.find(image);
-      if (view != view_of.end()) out.views.push_back(view->second);
+    for (const auto& [image, feature] : point.track) {
+      const auto found = used.find(image);
+      if (found == used.end()) continue;
+      const auto& [view, features] = found->second;
+      Eigen::Vector2d pixel = Eigen::Vector2d::Constant(NAN);
+      if (feature < features->size()) pixel = (*features)[feature].array() - 0.5;
+      out.sights.push_back({view, pixel});
     }
-    std::sort(out.views.begin(), out.views.end());
-    out.views.erase(std::unique(out.views.begin(), out.views.end()), out.views.end());
-    if (!out.views.empty()) scene->points.push_back(std::move(out));
+    std::stable_sort(out.sights.begin(), out.sights.end(),
+                     [](const PointSight& a, const PointSight& b) { return a.view < b.view; });
+    const auto repeated =
+        std::unique(out.sights.begin(), out.sights.end(),
+                    [](const PointSight& a, const PointSight& b) { return a.view == b.view; });
+    out.sights.erase(repeated, out.sights.end());
+    if (!out.sights.empty()) scene->points.push_back(std::move(out));
   }
 }
 
@@ -112,7 +125,7 @@ void read(const SceneSource& source, Scene* scene) {
   std::error_code none;
   const bool inside = fs::is_directory(folder + "/images", none);
   const std::string images = inside ? folder + "/images" : folder;
-  std::unordered_map<std::uint32_t, int> view_of;
+  UsedImages used;
   std::vector<std::string> without_file;
   for (const ColmapImage& image : model.images) {
     const auto camera = model.cameras.find(image.camera);
@@ -134,12 +147,12 @@ void read(const SceneSource& source, Scene* scene) {
     if (frame.image_path.empty() && !frame.is_outside) {
       without_file.push_back(image.name);
     } else if (add_frame(frame, scene)) {
-      view_of[image.id] = int(scene->views.size()) - 1;
+      used[image.id] = {int(scene->views.size()) - 1, &image.features};
     }
   }
   warn_of("poses without an image", without_file, scene);
   warn_of_images_without_pose(images, inside, model, scene);
-  add_points(model, view_of, scene);
+  add_points(model, used, scene);
 }
 
 }  // namespace

@@ -119,7 +119,11 @@ std::vector<ColmapImage> read_images_binary(const std::string& path) {
     image.cam_from_world = make_colmap_pose({q[0], q[1], q[2], q[3]}, t);
     image.camera = file.read<std::uint32_t>();
     image.name = file.read_text();
-    file.skip(kPoint2D * file.read_count(kPoint2D));  // points3D has the other end of each
+    const auto features = file.read_count(kPoint2D);
+    image.features.reserve(features);
+    const std::vector<double> numbers = file.read<double>(3 * features);
+    for (size_t i = 0; i < numbers.size(); i += 3)  // the third is the point's id
+      image.features.emplace_back(numbers[i], numbers[i + 1]);
   }
   return images;
 }
@@ -137,7 +141,7 @@ std::vector<ColmapPoint> read_points_binary(const std::string& path) {
     file.skip(3 + 8);  // colour, error
     const auto length = file.read_count(8);
     const auto track = file.read<std::uint32_t>(2 * length);  // image, index in it, image, ...
-    for (size_t i = 0; i < track.size(); i += 2) point.images.push_back(track[i]);
+    for (size_t i = 0; i < track.size(); i += 2) point.track.push_back({track[i], track[i + 1]});
   }
   return points;
 }

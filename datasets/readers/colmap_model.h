@@ -27,11 +27,15 @@ struct ColmapImage {
   std::string name;  ///< of its file, with folders
   /// The rotation is zero if the file's quaternion is; numbers that are not finite stay so.
   Pose cam_from_world;
+  std::vector<Eigen::Vector2d> features;  ///< [px] points of the image, its corner is (0, 0)
 };
 
 struct ColmapPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::vector<std::uint32_t> images;  ///< ids, as the file has them
+  struct Element {
+    std::uint32_t image = 0, feature = 0;  ///< id of the image, index of its feature
+  };
+  std::vector<Element> track;  ///< as the file has it
 };
 
 /// What the files cameras, images and points3D of a folder say (COLMAP's doc/format.rst); rigs and

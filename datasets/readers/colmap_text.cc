@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 
@@ -49,13 +50,19 @@ class TextFile {
     skip_blanks();
     return line_.substr(at_);
   }
-  double read_number() {
+  /// False, and nothing read, if no number comes next.
+  bool find_number(double* value) {
     skip_blanks();
     const char* const begin = line_.c_str() + at_;
     char* end = nullptr;
-    const double value = std::strtod(begin, &end);
-    if (end == begin || !(is_blank(*end) || *end == '\0')) complain("a number", read_word());
+    *value = std::strtod(begin, &end);
+    if (end == begin || !(is_blank(*end) || *end == '\0')) return false;
     at_ += size_t(end - begin);
+    return true;
+  }
+  double read_number() {
+    double value;
+    if (!find_number(&value)) complain("a number", read_word());
     return value;
   }
   std::uint32_t read_id() {
@@ -89,6 +96,18 @@ Eigen::Vector3d read_vector(TextFile* file) {
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) v[i] = file->read_number();
   return v;
+}
+
+constexpr std::uint32_t kNoFeature = UINT32_MAX;
+
+// X Y POINT3D_ID, over and over, as far as these are numbers: cameras do not depend on them.
+std::vector<Eigen::Vector2d> read_features(TextFile* file) {
+  std::vector<Eigen::Vector2d> features;
+  Eigen::Vector2d at;
+  double point;
+  while (file->find_number(&at[0]) && file->find_number(&at[1]) && file->find_number(&point))
+    features.push_back(at);
+  return features;
 }
 
 }  // namespace
@@ -128,7 +147,7 @@ std::vector<ColmapImage> read_images_text(const std::string& path) {
     if (image.name.empty()) file.complain("the name of an image", "");
     images.push_back(image);
     check_frame_count(path, images.size());
-    file.next_line();  // points3D has the other end of each point
+    if (file.next_line()) images.back().features = read_features(&file);
   }
   return images;
 }
@@ -143,8 +162,10 @@ std::vector<ColmapPoint> read_points_text(const std::string& path) {
     point.position = read_vector(&file);
     for (int i = 0; i < 4; ++i) file.read_number();  // colour, error
     while (!file.at_end()) {
-      point.images.push_back(file.read_id());
-      file.read_number();
+      const std::uint32_t image = file.read_id();
+      const double feature = file.read_number();
+      const bool known = feature >= 0 && feature < kNoFeature;
+      point.track.push_back({image, known ? std::uint32_t(feature) : kNoFeature});
     }
     points.push_back(point);
   }

@@ -47,10 +47,10 @@ void leave_out_far_views(Scene* scene) {
   }
   scene->views = std::move(near);
   for (ScenePoint& point : scene->points) {
-    std::vector<int> seen;
-    for (const int view : point.views)
-      if (index[view] >= 0) seen.push_back(index[view]);
-    point.views = std::move(seen);
+    std::vector<PointSight> seen;
+    for (const PointSight& sight : point.sights)
+      if (index[sight.view] >= 0) seen.push_back({index[sight.view], sight.pixel});
+    point.sights = std::move(seen);
   }
 }
 

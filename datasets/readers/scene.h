@@ -10,10 +10,16 @@
 
 namespace sketchsplat {
 
+/// Where a view shows a point.
+struct PointSight {
+  int view = 0;           ///< index into Scene::views
+  Eigen::Vector2d pixel;  ///< in the image, where the lens draws it; NaN if nobody says
+};
+
 /// A point that structure from motion found.
 struct ScenePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::vector<int> views;  ///< that see it: indices into Scene::views, ascending
+  std::vector<PointSight> sights;  ///< by view, ascending; one a view
 };
 
 /// A folder of calibrated images, whatever its format.

@@ -6,17 +6,25 @@
 
 namespace sketchsplat {
 
+Eigen::Vector2d shrunk(const Eigen::Vector2d& pixel, int denominator) {
+  return (pixel.array() + 0.5) / denominator - 0.5;
+}
+
 Scene with_smaller_pictures(const Scene& scene, int least_side) {
   Scene out = scene;
+  std::vector<int> factors;
   for (View& view : out.views) {
     const int longer = std::max(view.camera.width, view.camera.height);
-    const int factor = least_side > 0 ? longer / least_side : 1;
+    const int factor = least_side > 0 ? std::max(1, longer / least_side) : 1;
+    factors.push_back(factor);
     if (factor < 2) continue;
     const View full = view;
     view.make_picture = [full, factor] { return read_picture(full, factor); };
     view.mask_path.clear();  // the picture has it
     view.camera = full.camera.shrunk(factor);
   }
+  for (ScenePoint& point : out.points)
+    for (PointSight& sight : point.sights) sight.pixel = shrunk(sight.pixel, factors[sight.view]);
   return out;
 }
 

@@ -7,6 +7,9 @@
 
 namespace sketchsplat {
 
+/// Where a pixel lies in the picture of 1 / denominator the size; see Camera::shrunk.
+Eigen::Vector2d shrunk(const Eigen::Vector2d& pixel, int denominator);
+
 /// The scene with pictures whose longer side is at least twice `least_side` made smaller by the
 /// largest whole factor that leaves so many pixels: blocks of pixels become one where a picture is
 /// read, masks with it, and cameras are those of the smaller pictures. 0 leaves all as they are.

@@ -43,6 +43,12 @@ void write_images(const TempFolder& folder) {
     write_image(folder, std::string("images/") + name);
 }
 
+std::vector<int> views_of(const ScenePoint& point) {
+  std::vector<int> views;
+  for (const PointSight& sight : point.sights) views.push_back(sight.view);
+  return views;
+}
+
 void expect_small_model(const Scene& scene) {
   EXPECT_EQ(scene.format, "colmap");
   EXPECT_THAT(scene.warnings, IsEmpty());
@@ -70,8 +76,10 @@ void expect_small_model(const Scene& scene) {
       << "a quaternion of any length";
   ASSERT_EQ(scene.points.size(), 2u);
   EXPECT_EQ(scene.points[0].position, Eigen::Vector3d(1, 2, 3));
-  EXPECT_THAT(scene.points[0].views, ElementsAre(0, 2));
-  EXPECT_THAT(scene.points[1].views, ElementsAre(1));
+  EXPECT_THAT(views_of(scene.points[0]), ElementsAre(0, 2));
+  EXPECT_THAT(views_of(scene.points[1]), ElementsAre(1));
+  EXPECT_FALSE(scene.points[0].sights[0].pixel.allFinite()) << "the image lists no such feature";
+  EXPECT_EQ(scene.points[0].sights[1].pixel, Eigen::Vector2d(2.5, 3.5));
 }
 
 TEST(Colmap, TextAndBinaryModelsAreReadInAllTheirPlaces) {
@@ -231,7 +239,7 @@ TEST(Colmap, PosesWithoutImageAndImagesWithoutPoseAreCountedAndNamed) {
               ElementsAre("poses without an image: 2 (c.png, sub/two words.png)",
                           "images without a pose: 4 (more/w.JPG, more/x.JPG, more/y.JPG, ...)"));
   ASSERT_EQ(scene.points.size(), 1u) << "points that nobody sees are of no use";
-  EXPECT_THAT(scene.points[0].views, ElementsAre(0));
+  EXPECT_THAT(views_of(scene.points[0]), ElementsAre(0));
 }
 
 TEST(Colmap, PointsMayBeMissingEmptyOrNotFinite) {

@@ -31,12 +31,15 @@ TEST_P(Photographs, AreTheSameInBothFormats) {
     const Image<float> mask = read_picture(v).alpha;
     int seen = 0, on_object = 0;
     for (const ScenePoint& point : b.points) {
-      if (!std::binary_search(point.views.begin(), point.views.end(), int(i))) continue;
+      const auto sight = std::find_if(point.sights.begin(), point.sights.end(),
+                                      [&](const PointSight& s) { return s.view == int(i); });
+      if (sight == point.sights.end()) continue;
       double depth;
       Eigen::Vector2d p, q;
       ASSERT_TRUE(u.image_pixel(u.project(point.position, &depth), &p));
       ASSERT_TRUE(v.image_pixel(v.project(point.position, &depth), &q));
       EXPECT_LT((p - q).norm(), 1e-4);
+      EXPECT_LT((sight->pixel - q).norm(), 0.1);
       EXPECT_GT(depth, 0);
       EXPECT_TRUE(v.camera.contains(q)) << q.transpose();
       on_object += mask.at(int(std::lround(q.x())), int(std::lround(q.y()))) > 0.5f;

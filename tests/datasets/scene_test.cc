@@ -230,11 +230,15 @@ TEST(LeaveOutFarViews, PointsKeepTheViewsThatStay) {
     view.cam_from_world.translation.x() = -x;
     scene.views.push_back(view);
   }
-  scene.points = {{Eigen::Vector3d::Zero(), {0, 1, 4}}, {Eigen::Vector3d::Zero(), {1}}};
+  scene.points = {{Eigen::Vector3d::Zero(), {{0, {5, 5}}, {1, {6, 6}}, {4, {7, 7}}}},
+                  {Eigen::Vector3d::Zero(), {{1, {8, 8}}}}};
   leave_out_far_views(&scene);
   ASSERT_EQ(scene.views.size(), 4u);
-  EXPECT_THAT(scene.points[0].views, ElementsAre(0, 3));
-  EXPECT_THAT(scene.points[1].views, IsEmpty());
+  ASSERT_EQ(scene.points[0].sights.size(), 2u);
+  EXPECT_EQ(scene.points[0].sights[0].view, 0);
+  EXPECT_EQ(scene.points[0].sights[1].view, 3);
+  EXPECT_EQ(scene.points[0].sights[1].pixel, Eigen::Vector2d(7, 7));
+  EXPECT_THAT(scene.points[1].sights, IsEmpty());
 }
 
 TEST(OpenScene, PosesThatAreAlmostRotationsAreMadeRotations) {

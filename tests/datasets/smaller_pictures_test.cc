@@ -28,6 +28,11 @@ struct Smaller : testing::Test {
   Scene scene;
 };
 
+TEST_F(Smaller, PixelsOfPointsFollow) {
+  scene.points = {{{0, 0, 1}, {{0, {11.5, 3.5}}}}};
+  EXPECT_EQ(with_smaller_pictures(scene, 6).points[0].sights[0].pixel, Eigen::Vector2d(2.5, 0.5));
+}
+
 TEST_F(Smaller, BlocksOfPixelsBecomeOneAndTheCameraAndMaskFollow) {
   const Scene small = with_smaller_pictures(scene, 6);  // 24 / 6: a fourth
   const View& view = small.views[0];
