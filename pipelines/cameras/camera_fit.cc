@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "datasets/types/median.h"
+#include "pipelines/cameras/point_prior.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -69,7 +70,7 @@ std::vector<double> image_radii(const Observation& o, const EdgeWorld& world,
 class System {
  public:
   System(const Sketch& sketch, const Observation& o, const EdgeWorld& world,
-         const std::vector<View>& stated, const CameraPrior& prior);
+         const StatedCameras& stated, const CameraPrior& prior);
 
   void solve(int steps);
   CameraFit result(const Sketch& joined);
@@ -105,6 +106,7 @@ class System {
   Vector3d middle_;
   std::vector<double> radius_;
   CameraUnknowns cameras_;
+  CameraQuadratic prior_;
   State now_;
   std::vector<Vector3d> points_, tangents_;  // of the samples
   std::vector<Row> rows_;
@@ -118,11 +120,13 @@ class System {
 };
 
 System::System(const Sketch& sketch, const Observation& o, const EdgeWorld& world,
-               const std::vector<View>& stated, const CameraPrior& prior)
+               const StatedCameras& stated, const CameraPrior& prior)
     : layout_(o.layout),
       middle_(o.samples.position.rowwise().mean()),
       radius_(image_radii(o, world, middle_)),
-      cameras_(stated, middle_, radius_, prior) {
+      cameras_(stated.views, middle_, radius_, prior),
+      prior_(point_prior(cameras_, stated.points)) {
+  prior_.information += cameras_.information().asDiagonal();
   for (int s = 0; s < sketch.size(); ++s) {
     kinds_.push_back(sketch.strokes[s].kind);
     now_.strokes.push_back(control_points(sketch, s));
@@ -219,7 +223,8 @@ std::vector<double> System::distances() const {
 }
 
 double System::cost() const {
-  double sum = now_.cameras.cwiseAbs2().dot(cameras_.information());
+  const VectorXd& x = now_.cameras;
+  double sum = x.dot(prior_.information * x) + 2 * prior_.gradient.dot(x);
   const std::vector<double> d = distances();
   for (size_t i = 0; i < rows_.size(); ++i) sum += rows_[i].weight * d[i] * d[i];
   return sum;
@@ -270,8 +275,8 @@ void System::assemble(const std::vector<Linear>& rows, double damping, int half)
         normal.inverse += es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() /
                           (es.eigenvalues()[k] + damping * largest);
   }
-  hessian_ = cameras_.information().asDiagonal();
-  gradient_ = cameras_.information().cwiseProduct(now_.cameras);
+  hessian_ = prior_.information;
+  gradient_ = prior_.gradient + prior_.information * now_.cameras;
   for (int v = 0; v < int(of_view_.size()); ++v) {
     const int camera = cameras_.camera_of(v), shared = cameras_.num_shared(camera);
     const int p = cameras_.pose_column(v), c = cameras_.shared_column(camera);
@@ -396,11 +401,10 @@ struct Confirmed {
   double sigmas = 0, told = 0;  // told: the sum of squares that it explains
 };
 Confirmed confirm(const std::array<MatrixXd, 2>& hessian, const std::array<VectorXd, 2>& gradient,
-                  const VectorXd& information) {
+                  const MatrixXd& information) {
   Confirmed out;
   for (const int half : {0, 1}) {
-    MatrixXd held = hessian[1 - half];
-    held.diagonal() += information;
+    const MatrixXd held = hessian[1 - half] + information;
     const VectorXd move = -held.ldlt().solve(gradient[1 - half]);
     const double fits = -move.dot(gradient[half]), spread = move.dot(hessian[half] * move);
     if (!(spread > 0)) continue;
@@ -413,9 +417,8 @@ Confirmed confirm(const std::array<MatrixXd, 2>& hessian, const std::array<Vecto
 // How much more alike the gradients of two halves are than by chance, in standard deviations: of
 // independent ones, a.M.b has variance tr(M A M B), for any M; this one is that of all strokes.
 double alike(const std::array<MatrixXd, 2>& hessian, const std::array<VectorXd, 2>& gradient,
-             const VectorXd& information) {
-  MatrixXd both = hessian[0] + hessian[1];
-  both.diagonal() += information;
+             const MatrixXd& information) {
+  const MatrixXd both = hessian[0] + hessian[1] + information;
   const Eigen::LDLT<MatrixXd> inverse(both);
   const double variance = (inverse.solve(hessian[0]) * inverse.solve(hessian[1])).trace();
   return variance > 0 ? gradient[0].dot(inverse.solve(gradient[1])) / std::sqrt(variance) : 0;
@@ -425,27 +428,32 @@ CameraEvidence System::evidence() {
   std::vector<Linear> rows;
   linearise(&rows);
   const int poses = kPose * cameras_.views(), shared = cameras_.size() - poses;
-  const VectorXd& information = cameras_.information();
+  const MatrixXd& information = prior_.information;
+  const auto prior_cross = information.topRightCorner(poses, shared);
+  const MatrixXd prior_shared =  // poses are free in it
+      information.bottomRightCorner(shared, shared) -
+      prior_cross.transpose() * information.topLeftCorner(poses, poses).ldlt().solve(prior_cross);
   std::array<MatrixXd, 2> of_poses, of_shared;
   std::array<VectorXd, 2> by_poses, by_shared;
   for (const int half : {0, 1}) {
     assemble(rows, 0, half);
-    gradient_ -= information.cwiseProduct(now_.cameras);
+    gradient_ -= prior_.gradient + information * now_.cameras;
     const auto cross = hessian_.topRightCorner(poses, shared);
     const MatrixXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross);
     of_shared[half] = hessian_.bottomRightCorner(shared, shared) - cross.transpose() * follow;
-    of_shared[half].diagonal() -= information.tail(shared);
+    of_shared[half] -= prior_shared;
     by_shared[half] = gradient_.tail(shared) - follow.transpose() * gradient_.head(poses);
     of_poses[half] = hessian_.topLeftCorner(poses, poses);
-    of_poses[half].diagonal() -= information.head(poses);
+    of_poses[half] -= information.topLeftCorner(poses, poses);
     by_poses[half] = gradient_.head(poses);
   }
-  const Confirmed moved = confirm(of_poses, by_poses, information.head(poses));
+  const Confirmed moved =
+      confirm(of_poses, by_poses, information.topLeftCorner(poses, poses));
   CameraEvidence out;
   out.offset_px = before_;
   out.poses = moved.sigmas;
   out.error_px = offset_sigma_ * std::sqrt(std::max(0.0, moved.told) / std::max(1, offsets_));
-  if (shared > 0) out.shared = alike(of_shared, by_shared, information.tail(shared));
+  if (shared > 0) out.shared = alike(of_shared, by_shared, prior_shared);
   return out;
 }
 
@@ -466,14 +474,14 @@ CameraFit System::result(const Sketch& joined) {
 }  // namespace
 
 CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
-                      const std::vector<View>& stated, const CameraPrior& prior, int steps) {
+                      const StatedCameras& stated, const CameraPrior& prior, int steps) {
   System system(sketch, observation, world, stated, prior);
   system.solve(steps);
   return system.result(sketch);
 }
 
 CameraEvidence camera_evidence(const Sketch& sketch, const Observation& observation,
-                               const EdgeWorld& world, const std::vector<View>& stated,
+                               const EdgeWorld& world, const StatedCameras& stated,
                                const CameraPrior& prior) {
   return System(sketch, observation, world, stated, prior).evidence();
 }

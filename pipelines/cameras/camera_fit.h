@@ -3,10 +3,18 @@
 
 #include <vector>
 
+#include "datasets/readers/scene.h"
 #include "pipelines/cameras/camera_unknowns.h"
 #include "pipelines/survey/observe.h"
 
 namespace sketchsplat {
+
+/// Cameras as stated, and the points that structure from motion found with
+/// them (point_prior.h), whose sights index these views.
+struct StatedCameras {
+  std::vector<View> views;
+  std::vector<ScenePoint> points = {};
+};
 
 /// Cameras and strokes that agree best with matched edgels, and how well.
 struct CameraFit {
@@ -27,9 +35,10 @@ struct CameraFit {
 /// eliminated first (Schur's complement). Distances are those in the image, behind the lens, from
 /// the tangent of the stroke's image; strokes that share a node are free of one another, and their
 /// ends meet in the middle at last. The gauge is held by the prior about `stated`, from which alone
-/// it counts; world.views, which the observation was made with, are where the search begins.
+/// it counts, and by its points; world.views, which the observation was made with, are where the
+/// search begins.
 CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
-                      const std::vector<View>& stated, const CameraPrior& prior, int steps);
+                      const StatedCameras& stated, const CameraPrior& prior, int steps);
 
 /// Whether cameras err, from what strokes tell that other strokes confirm.
 struct CameraEvidence {
@@ -44,7 +53,7 @@ struct CameraEvidence {
 /// d.d where cameras are right, in standard deviations of offsets; else its mean is d.d. One linear
 /// step from world.views. For what views share, each half has poses of its own.
 CameraEvidence camera_evidence(const Sketch& sketch, const Observation& observation,
-                               const EdgeWorld& world, const std::vector<View>& stated,
+                               const EdgeWorld& world, const StatedCameras& stated,
                                const CameraPrior& prior);
 
 }  // namespace sketchsplat

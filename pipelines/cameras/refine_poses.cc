@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/cameras/refine_poses.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include "datasets/types/median.h"
 #include "edges/views/recast.h"
 #include "pipelines/cameras/camera_fit.h"
+#include "pipelines/cameras/point_prior.h"
 #include "pipelines/stages/stages.h"
 #include "pipelines/survey/explained.h"
 
@@ -29,7 +31,7 @@ constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be
 constexpr double kNoWorse = 0.9;     // times the edgels that are explained, for cameras to move;
                                      // none fewer among things, whose few strokes fit any cameras
 constexpr double kStillPx = 0.1;     // strokes stay as they were lifted
-constexpr double kMovedPx = 0.3;     // they are lifted, and cameras are fitted again
+constexpr double kMovedPx = 0.2;     // they are lifted, and cameras are fitted again
 constexpr int kFewestViews = 3, kMostLifts = 5;
 constexpr int kEnoughViews = 8;  // where most edges are seen by as many as a point takes
 constexpr double kAwry = 0.05;   // of the width of a picture: nothing but accidents fits
@@ -39,6 +41,11 @@ struct Posed {
   Sketch sketch;
   RunReport report;  // of how the strokes were found, alone
 };
+
+// The world's cameras before they move, with the scene's points.
+StatedCameras stated_cameras(const EdgeWorld& world, const Scene& scene) {
+  return {world.views, points_among(world.views, scene)};
+}
 
 // Then most edges in the images are no object's, and the share that strokes explain tells nothing.
 bool stands_among_things(const EdgeWorld& world) { return bool(world.object.table); }
@@ -80,16 +87,17 @@ struct Misfit {
   int rows = 0;
 };
 
-Misfit misfit(const Posed& posed) {
+Misfit misfit(const Posed& posed, const StatedCameras& stated) {
   Misfit out;
   if (posed.sketch.size() == 0) return out;
   const Observation o = look(posed, kReachPx);
   out.rows = int(o.matches.matches.size());
   if (out.rows == 0) return out;
-  const std::vector<View>& stated = posed.world.views;
   const CameraEvidence evidence = camera_evidence(posed.sketch, o, posed.world, stated, {});
   out.offset_px = out.pose_px = evidence.offset_px, out.error_px = evidence.error_px;
-  out.poses = evidence.poses > kRare && evidence.error_px > kErrPx;
+  // Cameras that structure from motion found are never exact.
+  const double least = stated.points.empty() ? kErrPx : kExactPx;
+  out.poses = evidence.poses > kRare && evidence.error_px > least;
   CameraPrior held;
   held.pose_px = kExactPx;
   // Poses that nothing contradicts do not take up what another focal length or lens explains.
@@ -110,7 +118,7 @@ CameraPrior prior_of(const Misfit& misfit) {
 }
 
 // Match, move cameras and strokes, and match again with a reach that shrinks.
-double refine(const std::vector<View>& stated, const CameraPrior& prior, Posed* posed) {
+double refine(const StatedCameras& stated, const CameraPrior& prior, Posed* posed) {
   double offset = 0;
   for (const double reach : {kReachPx, kReachPx, 1.5, 1.0}) {
     if (posed->sketch.size() == 0) break;
@@ -124,18 +132,28 @@ double refine(const std::vector<View>& stated, const CameraPrior& prior, Posed* 
   return offset;
 }
 
-// How far the cameras have moved what the strokes show [px], median over views.
-double moved_px(const Sketch& sketch, const std::vector<View>& a, const std::vector<View>& b,
-                double spacing) {
-  const Samples samples = evaluate_samples(sketch, plan_samples(sketch, spacing));
+// Strokes, and the cameras that they were fitted with.
+struct Shown {
+  const Sketch& sketch;
+  const std::vector<View>& views;
+};
+
+// How far the cameras have moved against one another what the strokes show [px], median over views:
+// of what they and the strokes moved together, as a similarity, a lift would find the same.
+double moved_px(const Shown& a, const Shown& b, double spacing) {
+  const SampleLayout layout = plan_samples(a.sketch, spacing);
+  const Eigen::Matrix3Xd before = evaluate_samples(a.sketch, layout).position;
+  const Eigen::Matrix3Xd after = evaluate_samples(b.sketch, layout).position;
+  if (before.cols() == 0) return 0;
+  const Eigen::Matrix4d together = Eigen::umeyama(before, after);
+  const Eigen::Matrix3Xd there = (together * before.colwise().homogeneous()).topRows<3>();
   std::vector<double> moved;
-  for (size_t v = 0; v < a.size(); ++v) {
+  for (size_t v = 0; v < a.views.size(); ++v) {
     double sum = 0, depth;
-    for (int i = 0; i < samples.position.cols(); ++i)
-      sum += (a[v].project(samples.position.col(i), &depth) -
-              b[v].project(samples.position.col(i), &depth))
+    for (int i = 0; i < before.cols(); ++i)
+      sum += (a.views[v].project(before.col(i), &depth) - b.views[v].project(there.col(i), &depth))
                  .squaredNorm();
-    moved.push_back(std::sqrt(sum / std::max<int>(1, int(samples.position.cols()))));
+    moved.push_back(std::sqrt(sum / double(before.cols())));
   }
   return median(moved);
 }
@@ -150,26 +168,28 @@ std::vector<View> enlarged(const std::vector<View>& coarse, std::vector<View> fi
   return fine;
 }
 
-std::vector<View> shrunk(std::vector<View> views, int factor) {
-  for (View& v : views) v.camera = v.camera.shrunk(factor);
-  return views;
+StatedCameras shrunk(StatedCameras stated, int factor) {
+  for (View& v : stated.views) v.camera = v.camera.shrunk(factor);
+  stated.points = shrunk(std::move(stated.points), factor);
+  return stated;
 }
 
 // The world by cameras that pictures of 1 / factor the size agree on.
-EdgeWorld coarse_to_fine(const EdgeWorld& world, int factor, const std::vector<View>& stated,
+EdgeWorld coarse_to_fine(const EdgeWorld& world, int factor, const StatedCameras& stated,
                          const ReconstructOptions& options, CameraPrior* prior,
                          Progress* progress) {
   Posed posed{coarser(world, factor), {}, {}};
   find_strokes(options, progress, &posed);
-  const Misfit off = misfit(posed);
+  const StatedCameras small = shrunk(stated, factor);
+  const Misfit off = misfit(posed, {posed.world.views, small.points});
   if (off.rows == 0) return world;
   CameraPrior here = prior_of(off);
   here.pose_px = std::max(here.pose_px, prior->pose_px / factor);
   here.shared = prior->shared;
   here.lens_px /= factor;
   prior->pose_px = here.pose_px * factor;
-  refine(shrunk(stated, factor), here, &posed);
-  return refreshed(recast(world, enlarged(posed.world.views, stated, factor)));
+  refine(small, here, &posed);
+  return refreshed(recast(world, enlarged(posed.world.views, stated.views, factor)));
 }
 
 EdgeWorld without(const EdgeWorld& world, const std::vector<char>& leave) {
@@ -235,7 +255,7 @@ bool leave_out(const Explained& shares, RunReport* report, Progress* progress, P
 }
 
 // Whether the strokes, once the poses fit, are sure that what views share is wrong.
-bool shared_is_wrong(const Posed& posed, const std::vector<View>& stated, CameraPrior prior) {
+bool shared_is_wrong(const Posed& posed, const StatedCameras& stated, CameraPrior prior) {
   if (posed.sketch.size() == 0) return false;
   const Observation o = look(posed, kReachPx);
   if (o.matches.matches.empty()) return false;
@@ -244,14 +264,14 @@ bool shared_is_wrong(const Posed& posed, const std::vector<View>& stated, Camera
 }
 
 // Moves cameras and strokes, and lifts again while that moves them; the offsets that are left.
-double settle(const std::vector<View>& stated, const CameraPrior& prior,
+double settle(const StatedCameras& stated, const CameraPrior& prior,
               const ReconstructOptions& options, Progress* progress, Posed* posed) {
   for (int round = 0;; ++round) {
     const std::vector<View> before = posed->world.views;
     const Sketch lifted = posed->sketch;
     const double after = refine(stated, prior, posed);
-    const double moved =
-        moved_px(posed->sketch, before, posed->world.views, posed->world.footprint * kSpacingPx);
+    const double moved = moved_px({lifted, before}, {posed->sketch, posed->world.views},
+                                  posed->world.footprint * kSpacingPx);
     posed->world = refreshed(std::move(posed->world));
     if (moved < kStillPx) {
       posed->sketch = lifted;
@@ -263,7 +283,7 @@ double settle(const std::vector<View>& stated, const CameraPrior& prior,
 }
 
 // Poses first; focal length, centre and lens if these do not do it.
-double refine_from(const std::vector<View>& stated, CameraPrior prior,
+double refine_from(const StatedCameras& stated, CameraPrior prior,
                    const ReconstructOptions& options, Progress* progress, Posed* posed) {
   const double after = settle(stated, prior, options, progress, posed);
   if (prior.shared || !shared_is_wrong(*posed, stated, prior)) return after;
@@ -273,9 +293,8 @@ double refine_from(const std::vector<View>& stated, CameraPrior prior,
 
 // From the first strokes; where these explain little, from those of small pictures, too. The
 // offsets that are left.
-double refine_all(const Posed& first, const Misfit& off, const ReconstructOptions& options,
-                  Progress* progress, Posed* posed) {
-  const std::vector<View>& stated = first.world.views;
+double refine_all(const Posed& first, const StatedCameras& stated, const Misfit& off,
+                  const ReconstructOptions& options, Progress* progress, Posed* posed) {
   CameraPrior prior = prior_of(off);
   const double after = refine_from(stated, prior, options, progress, posed);
   const double share = explained(posed->sketch, posed->world).share;
@@ -291,30 +310,31 @@ double refine_all(const Posed& first, const Misfit& off, const ReconstructOption
 }
 
 // Relative standard deviation of the size of what the moved cameras show.
-double scale_sigma(const Posed& posed, const std::vector<View>& stated, const Misfit& off) {
+double scale_sigma(const Posed& posed, const StatedCameras& stated, const Misfit& off) {
   if (posed.sketch.size() == 0) return 0;
   CameraPrior prior = prior_of(off);
-  for (size_t v = 0; v < stated.size(); ++v)
-    if (posed.world.views[v].camera.fx != stated[v].camera.fx) prior.shared = true;
+  for (size_t v = 0; v < stated.views.size(); ++v)
+    if (posed.world.views[v].camera.fx != stated.views[v].camera.fx) prior.shared = true;
   const Observation o = look(posed, kReachPx);
   if (o.matches.matches.empty()) return 0;
   return fit_cameras(posed.sketch, o, posed.world, stated, prior, 0).scale_sigma;
 }
 
 // Cameras that fit, where these ones do not and others explain more; true if they moved.
-bool move_cameras(const Misfit& off, double share, const ReconstructOptions& options,
-                  RunReport* report, Progress* progress, Posed* posed) {
-  const Posed stated = *posed;
+bool move_cameras(const StatedCameras& stated, const Misfit& off, double share,
+                  const ReconstructOptions& options, RunReport* report, Progress* progress,
+                  Posed* posed) {
+  const Posed first = *posed;
   Stage stage("poses", 0, report, progress);
-  const double after = refine_all(stated, off, options, progress, posed);
+  const double after = refine_all(first, stated, off, options, progress, posed);
   const double least = (stands_among_things(posed->world) ? 1 : kNoWorse) * share;
   const bool moved =
       options.refine_poses == "on" || explained(posed->sketch, posed->world).share > least;
-  if (!moved) *posed = stated;
+  if (!moved) *posed = first;
   report->counts.push_back({"pose_offset_before_px", off.offset_px});
   report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
   if (moved)
-    report->counts.push_back({"pose_scale_sigma", scale_sigma(*posed, stated.world.views, off)});
+    report->counts.push_back({"pose_scale_sigma", scale_sigma(*posed, stated, off)});
   stage.result(moved ? "cameras moved" : "stated cameras fit as well");
   return moved;
 }
@@ -337,20 +357,21 @@ void tell(const Explained& shares, const Misfit& off, Progress* progress) {
 
 }  // namespace
 
-PosedStrokes pose_and_fit(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
-                          Progress* progress) {
+PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const ReconstructOptions& options,
+                          RunReport* report, Progress* progress) {
   Posed posed{std::move(world), {}, {}};
+  const StatedCameras stated = stated_cameras(posed.world, scene);
   find_strokes(options, progress, &posed);
   Explained shares = explained(posed.sketch, posed.world);
   const bool able = options.refine_poses != "off" && posed.world.views.size() >= kFewestViews &&
                     options.detector != "2dgs-sn";
-  const Misfit off = able ? misfit(posed) : Misfit{};
+  const Misfit off = able ? misfit(posed, stated) : Misfit{};
   tell(shares, off, progress);
   const bool low = shares.share < kChanceShare && !stands_among_things(posed.world);
   const double as_stated = shares.share;
   bool moved = false;
   if (able && (off.poses || off.shared || low || options.refine_poses == "on")) {
-    moved = move_cameras(off, shares.share, options, report, progress, &posed);
+    moved = move_cameras(stated, off, shares.share, options, report, progress, &posed);
     shares = explained(posed.sketch, posed.world);
   }
   if (able && shares.share > 0 && leave_out(shares, report, progress, &posed)) {

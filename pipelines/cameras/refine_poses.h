@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "datasets/readers/scene.h"
 #include "edges/views/lift.h"
 #include "pipelines/base/run_report.h"
 #include "pipelines/stages/options.h"
@@ -23,7 +24,8 @@ struct PosedStrokes {
 /// tried. Views whose edgels do not fit the strokes of the others are left out with a warning.
 /// Without any of this nothing changes. Throws TooLittleError if views agree on no more than they
 /// would by accident.
-PosedStrokes pose_and_fit(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
-                          Progress* progress);
+/// Points of structure from motion, if the scene has any, hold the cameras where they fit them.
+PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const ReconstructOptions& options,
+                          RunReport* report, Progress* progress);
 
 }  // namespace sketchsplat

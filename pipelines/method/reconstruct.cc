@@ -61,7 +61,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   const FamilyStart family = start_from_siblings(near, options, &report, progress);
   const ReconstructOptions last = options_after(family, options);
   const bool cold = family.sketch.size() == 0;
-  const PosedStrokes posed = cold ? pose_and_fit(std::move(near), options, &report, progress)
+  const PosedStrokes posed = cold ? pose_and_fit(small, std::move(near), options, &report, progress)
                                   : PosedStrokes{std::move(near), family.sketch};
   const EdgeWorld& world = posed.world;
   Sketch sketch = posed.sketch;

@@ -53,7 +53,7 @@ PosedStrokes posed(const std::vector<View>& stated, const std::vector<View>& tru
                    RunReport* report, const std::string& how = "auto") {
   ReconstructOptions options;
   options.refine_poses = how;
-  return pose_and_fit(make_edge_world(stated, pictures(truth)), options, report, nullptr);
+  return pose_and_fit({}, make_edge_world(stated, pictures(truth)), options, report, nullptr);
 }
 
 // Of sides and diagonals of what was found to what is true: largest distance after a shift, turn
@@ -166,7 +166,7 @@ TEST(RefinePoses, EdgesThatErrByThemselvesAreNoReasonToMoveExactCameras) {
     }
   const ReconstructOptions options;
   RunReport report;
-  EXPECT_FALSE(pose_and_fit(make_edge_world(views, maps), options, &report, nullptr).refined);
+  EXPECT_FALSE(pose_and_fit({}, make_edge_world(views, maps), options, &report, nullptr).refined);
 }
 
 TEST(RefinePoses, CamerasThatErrComeBack) {

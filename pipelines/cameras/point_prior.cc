@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/cameras/point_prior.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "datasets/readers/smaller_pictures.h"
+#include "datasets/types/median.h"
+
+namespace sketchsplat {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kLeastSigma = 0.05;  // [px] of a sight
+constexpr double kBiweight = 4.685;   // standard deviations: 95 % efficient
+constexpr double kRank = 1e-9;        // of the largest eigenvalue: depth that no parallax tells
+constexpr int kFewest = 2;            // sights of a point
+
+struct SightTerm {
+  int view;
+  Vector2d residual;
+  CameraUnknowns::Derivatives by;
+};
+
+std::vector<SightTerm> terms_of(const CameraUnknowns& cameras, const ScenePoint& point) {
+  std::vector<SightTerm> terms;
+  for (const PointSight& sight : point.sights) {
+    SightTerm term;
+    Vector2d pixel;
+    if (!sight.pixel.allFinite() || !cameras.image(sight.view, point.position, &pixel, &term.by))
+      continue;
+    term.view = sight.view;
+    term.residual = pixel - sight.pixel;
+    terms.push_back(term);
+  }
+  return terms;
+}
+
+// 1.4826 times the median of what a normal error has in one direction.
+double scatter_px(const std::vector<std::vector<SightTerm>>& of_point) {
+  std::vector<double> apart;
+  for (const auto& terms : of_point)
+    for (const SightTerm& term : terms)
+      for (const double r : {term.residual.x(), term.residual.y()}) apart.push_back(std::abs(r));
+  return apart.empty() ? kLeastSigma : std::max(kLeastSigma, 1.4826 * median(apart));
+}
+
+// Where the unknowns of a sight's camera stand among all: its pose, then what it shares.
+std::vector<int> columns_of(const CameraUnknowns& cameras, const SightTerm& term) {
+  std::vector<int> columns;
+  for (int i = 0; i < CameraUnknowns::kPose; ++i)
+    columns.push_back(cameras.pose_column(term.view) + i);
+  const int camera = cameras.camera_of(term.view);
+  for (int i = 0; i < cameras.num_shared(camera); ++i)
+    columns.push_back(cameras.shared_column(camera) + i);
+  return columns;
+}
+
+// Of a point: the sum of its sights, less what moving it explains.
+void add_point(const CameraUnknowns& cameras, const std::vector<SightTerm>& terms, double sigma,
+               CameraQuadratic* sum) {
+  std::vector<int> used;
+  for (const SightTerm& term : terms)
+    for (const int column : columns_of(cameras, term)) used.push_back(column);
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const int n = int(used.size());
+  MatrixXd hessian = MatrixXd::Zero(n, n), cross = MatrixXd::Zero(3, n);
+  VectorXd gradient = VectorXd::Zero(n);
+  Matrix3d A = Matrix3d::Zero();
+  Vector3d b = Vector3d::Zero();
+  for (const SightTerm& term : terms) {
+    const double r2 = term.residual.squaredNorm() / std::pow(kBiweight * sigma, 2);
+    if (!(r2 < 1)) continue;
+    const double weight = std::pow((1 - r2) / sigma, 2);
+    const std::vector<int> columns = columns_of(cameras, term);
+    MatrixXd J = MatrixXd::Zero(2, n);
+    for (size_t i = 0; i < columns.size(); ++i) {
+      const auto at = std::lower_bound(used.begin(), used.end(), columns[i]) - used.begin();
+      constexpr size_t kPose = CameraUnknowns::kPose;
+      if (i < kPose) J.col(at) = term.by.pose.col(Eigen::Index(i));
+      else J.col(at) = term.by.shared.col(Eigen::Index(i - kPose));
+    }
+    hessian += weight * J.transpose() * J;
+    cross += weight * term.by.point.transpose() * J;
+    gradient += weight * J.transpose() * term.residual;
+    A += weight * term.by.point.transpose() * term.by.point;
+    b += weight * term.by.point.transpose() * term.residual;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> es(A);
+  Matrix3d inverse = Matrix3d::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (es.eigenvalues()[k] > kRank * es.eigenvalues()[2])
+      inverse += es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() /
+                 es.eigenvalues()[k];
+  hessian -= cross.transpose() * inverse * cross;
+  gradient -= cross.transpose() * (inverse * b);
+  for (int i = 0; i < n; ++i) {
+    sum->gradient[used[i]] += gradient[i];
+    for (int j = 0; j < n; ++j) sum->information(used[i], used[j]) += hessian(i, j);
+  }
+}
+
+}  // namespace
+
+CameraQuadratic point_prior(const CameraUnknowns& cameras, const std::vector<ScenePoint>& points) {
+  std::vector<std::vector<SightTerm>> of_point;
+  for (const ScenePoint& point : points) {
+    of_point.push_back(terms_of(cameras, point));
+    if (int(of_point.back().size()) < kFewest) of_point.pop_back();
+  }
+  CameraQuadratic sum{MatrixXd::Zero(cameras.size(), cameras.size()),
+                      VectorXd::Zero(cameras.size())};
+  const double sigma = scatter_px(of_point);
+  for (const auto& terms : of_point) add_point(cameras, terms, sigma, &sum);
+  return sum;
+}
+
+std::vector<ScenePoint> points_among(const std::vector<View>& views, const Scene& scene) {
+  std::vector<int> index(scene.views.size(), -1);
+  size_t i = 0;
+  for (size_t v = 0; v < views.size(); ++v, ++i) {
+    while (i < index.size() && (scene.views[i].name != views[v].name ||
+                                scene.views[i].image_path != views[v].image_path))
+      ++i;
+    if (i == index.size()) break;
+    index[i] = int(v);
+  }
+  std::vector<ScenePoint> out;
+  for (const ScenePoint& point : scene.points) {
+    ScenePoint seen{point.position, {}};
+    for (const PointSight& sight : point.sights)
+      if (index[sight.view] >= 0 && sight.pixel.allFinite())
+        seen.sights.push_back({index[sight.view], sight.pixel});
+    if (int(seen.sights.size()) >= kFewest) out.push_back(std::move(seen));
+  }
+  return out;
+}
+
+std::vector<ScenePoint> shrunk(std::vector<ScenePoint> points, int factor) {
+  for (ScenePoint& point : points)
+    for (PointSight& sight : point.sights) sight.pixel = shrunk(sight.pixel, factor);
+  return points;
+}
+
+}  // namespace sketchsplat
