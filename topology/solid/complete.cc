@@ -128,6 +128,7 @@ void imply(double tolerance, double slide, Completed* all) {
   for (int round = 0;; ++round) {
     all->polylines = polylines_of(all->sketch, kPieces);
     all->surfaces = find_surfaces(all->sketch, all->polylines, tolerance);
+    if (int(all->surfaces.size()) > all->most_surfaces) return;
     const std::vector<ImpliedStroke> implied =
         implied_strokes(all->seen, all->sketch, all->surfaces, tolerance, slide);
     if (implied.empty() || round == kRounds) break;
@@ -143,6 +144,7 @@ void imply(double tolerance, double slide, Completed* all) {
 Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours, double tolerance,
                    double slide, int most_surfaces) {
   Completed out;
+  out.most_surfaces = most_surfaces;
   Sketch cut = seen;
   cut_overlaps(tolerance, &cut);
   extend_to_planes(tolerance, slide, &cut);

@@ -31,16 +31,17 @@ struct Completed {
   std::vector<std::vector<int>> now;  ///< of the strokes that were given, those in their place
   std::vector<SurfaceStrokes> more;   ///< spheres, tori and extrusions that the seen ones ask for
   int rims = 0;                       ///< how many of the first others are rims of such
+  int most_surfaces = 0;              ///< nothing is added to strokes that ask for more
 
   void add(const EdgeOrigin& from, StrokeKind kind, int begin, int end,
            const std::vector<Eigen::Vector3d>& handles);
   void add(const ImpliedStroke& implied);
 };
 
-/// Adds edges that surfaces imply, and finds all surfaces, until there are no more. `tolerance`: of
-/// a stroke from the surface that it lies on, world units.
+/// Adds edges that surfaces imply, and finds all surfaces, until there are no more, or too many.
+/// `tolerance`: of a stroke from the surface that it lies on, world units.
 void imply(double tolerance, double slide, Completed* all);
-/// Where the strokes alone ask for more than `most_surfaces`, nothing else is added to these.
+/// The strokes, and all that they imply.
 Completed complete(const Sketch& seen, const std::vector<ContourLine>& contours, double tolerance,
                    double slide, int most_surfaces);
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -99,8 +100,9 @@ class Inference {
     const Vector3d direction = p.axis.cross(q.axis);
     if (direction.norm() < 0.02) return;  // about a degree: where they meet is not known
     std::vector<std::pair<double, int>> along;
-    std::set<int> nodes(nodes_[a].begin(), nodes_[a].end());
-    nodes.insert(nodes_[b].begin(), nodes_[b].end());
+    std::vector<int> nodes;
+    std::set_union(nodes_[a].begin(), nodes_[a].end(), nodes_[b].begin(), nodes_[b].end(),
+                   std::back_inserter(nodes));
     for (const int node : nodes) {
       const Vector3d place = sketch_.nodes.col(node);
       if (std::abs(surface_distance(p, place)) <= tolerance_ &&
