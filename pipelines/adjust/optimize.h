@@ -18,7 +18,7 @@ namespace sketchsplat {
 Eigen::MatrixXf sample_visibility(const Observation& observation, int num_views, int gap);
 
 struct OptimizeOptions {
-  int steps = 8;            ///< gradient steps per round; 0 leaves the sketch alone
+  int steps = 0;            ///< gradient steps per round; 0 leaves the sketch alone, 8 move it
   double spacing_px = 2.0;  ///< [px] between splats
   double sigma_px = 1.0;    ///< [px] width of the edges in the edge maps
   bool visibility = true;   ///< draw nothing where a stroke is hidden

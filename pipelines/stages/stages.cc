@@ -171,10 +171,12 @@ Round run_round(const Sketch& sketch, const EdgeWorld& world,
                 RunReport* report, Progress* progress) {
   Stage stage("round " + std::to_string(report->rounds.size() + 1), 0, report, progress);
   const OptimizeResult moved = optimize(sketch, world, targets, options.optimize);
-  Numbers row = {{"splats", double(moved.splats)},
-                 {"loss_before", moved.initial_loss},
-                 {"loss_after", moved.final_loss},
-                 {"strokes_before", double(sketch.size())}};
+  Numbers row;
+  if (options.optimize.steps > 0)
+    row = {{"splats", double(moved.splats)},
+           {"loss_before", moved.initial_loss},
+           {"loss_after", moved.final_loss}};
+  row.push_back({"strokes_before", double(sketch.size())});
   Round round{moved.sketch, false};
   if (options.simplify) {
     const Simplified simpler = simpler_graph(moved.sketch, world, options);

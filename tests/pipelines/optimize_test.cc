@@ -178,6 +178,7 @@ struct HiddenEdge {
   }
   double error_px(bool visibility) const {
     OptimizeOptions options;
+    options.steps = 8;
     options.visibility = visibility;
     Sketch s = truth;
     for (int round = 0; round < 3; ++round)
@@ -197,6 +198,7 @@ TEST(Optimize, LeavesAloneWhatItIsNotAskedOrNotAbleToMove) {
   add_line(&truth, {0.2, 0.3, 0.4}, {0.8, 0.4, 0.6});
   const EdgeWorld w = ideal_world(ring_of_views(6, kMiddle, 3), polylines_of(truth));
   OptimizeOptions options;
+  options.steps = 8;
   const std::vector<EdgeTarget> targets = make_targets(w, options);
   EXPECT_EQ(optimize(Sketch(), w, targets, options).sketch.size(), 0);
   Sketch far;

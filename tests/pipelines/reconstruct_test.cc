@@ -84,7 +84,16 @@ TEST_F(BoxHole, TheReportTellsWhatHappened) {
   EXPECT_GT(count("points"), 100);
   EXPECT_EQ(count("strokes"), result_->sketch.size());
   EXPECT_TRUE(result_->report.warnings.empty());
-  for (const Numbers& round : result_->report.rounds) {
+  for (const Numbers& round : result_->report.rounds) EXPECT_EQ(round.back().first, "strokes");
+}
+
+TEST_F(BoxHole, RoundsThatDrawLowerTheirLoss) {
+  ReconstructOptions options;
+  options.optimize.steps = 8;
+  options.solid = "off";
+  const Reconstruction drawn = reconstruct(*scene_, options, nullptr);
+  ASSERT_FALSE(drawn.report.rounds.empty());
+  for (const Numbers& round : drawn.report.rounds) {
     double before = -1, after = -1;
     for (const auto& [key, value] : round) {
       if (key == "loss_before") before = value;
