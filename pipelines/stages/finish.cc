@@ -19,17 +19,6 @@ constexpr const char* kByWidth[] = {"views_narrow", "views_as_wide", "views_wide
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
 constexpr double kProbable = 0.5;  // of an edge that something else than its edgels tells of
 
-RegularizeOptions regularize_options(const ReconstructOptions& options) {
-  RegularizeOptions regularize = options.regularize;
-  regularize.price = options.segment.price;
-  regularize.sigma_px = options.rechain.sigma_px;
-  const double degree = M_PI / 180;
-  regularize.refine.smooth_angle = options.polish.smooth_deg * degree;
-  regularize.refine.smooth_weight =
-      std::pow(1 / (kSmoother * options.polish.smooth_sigma_deg * degree), 2);
-  return regularize;
-}
-
 // What strokes are called when only some of them stay; -1 for the others.
 std::vector<int> numbers_after(const std::vector<bool>& stays) {
   std::vector<int> now;
@@ -126,6 +115,17 @@ Sketch snapped(const Regularized& regular, const StrokeObservation& seen, const 
 }
 
 }  // namespace
+
+RegularizeOptions regularize_options(const ReconstructOptions& options) {
+  RegularizeOptions regularize = options.regularize;
+  regularize.price = options.segment.price;
+  regularize.sigma_px = options.rechain.sigma_px;
+  const double degree = M_PI / 180;
+  regularize.refine.smooth_angle = options.polish.smooth_deg * degree;
+  regularize.refine.smooth_weight =
+      std::pow(1 / (kSmoother * options.polish.smooth_sigma_deg * degree), 2);
+  return regularize;
+}
 
 Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options,
                     RunReport* report) {

@@ -41,6 +41,10 @@ std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptio
 /// with the tolerance that edges of the detector need (surfel_sigma_px).
 SelectOptions select_options(const ReconstructOptions& options);
 
+/// How regularities are weighed: at the price and the least deviation of all that is described, and
+/// with the joints that polishing keeps smooth, ten times smoother.
+RegularizeOptions regularize_options(const ReconstructOptions& options);
+
 /// Strokes from lifted points: linked to chains, cut into the simplest curves, moved onto the
 /// edgels, chosen by what they explain, and as long as the views see them.
 Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,

@@ -33,8 +33,9 @@ Illumination random_light() {
 
 TEST(SurfelShading, GradientIsThatOfFiniteDifferences) {
   SurfelCloud cloud = random_cloud(4);
-  const Illumination light = random_light();
-  const Eigen::Matrix3Xd albedo = cloud.color, by_color = random_cloud(4).color;
+  Illumination light = random_light();
+  Eigen::Matrix3Xd albedo = cloud.color;
+  const Eigen::Matrix3Xd by_color = random_cloud(4).color;
   SurfelCloud gradient = SurfelCloud::zero(4);
   gradient.color = by_color;
   Eigen::Matrix3Xd by_albedo;
@@ -56,6 +57,8 @@ TEST(SurfelShading, GradientIsThatOfFiniteDifferences) {
   };
   compare(&cloud.rotation, gradient.rotation);
   compare(&cloud.center, gradient.center);
+  compare(&albedo, by_albedo);
+  compare(&light.light, by_light);
 }
 
 TEST(SurfelShading, FindsTheLightThatShadesOneAlbedo) {
@@ -158,6 +161,49 @@ TEST(SurfelSmoothness, LeavesAPlaneAloneAndPullsAPointBackToIt) {
   EXPECT_GT(gradient.center(2, 12), 0);
 }
 
+TEST(SurfelSmoothness, GradientIsThatOfFiniteDifferences) {
+  SurfelCloud cloud = random_cloud(5);
+  const std::vector<std::pair<int, int>> pairs = {{0, 1}, {1, 2}, {3, 4}, {0, 4}};
+  SurfelCloud gradient = SurfelCloud::zero(5), unused = gradient;
+  // So wide an edge that the weights of the pairs, which are no part of the gradient, stay.
+  constexpr double kEdgeDeg = 1e6, kStep = 1e-5;
+  smooth_gradient(cloud, pairs, 0.5, kEdgeDeg, 3, &gradient);
+  const auto value = [&] { return smooth_gradient(cloud, pairs, 0.5, kEdgeDeg, 3, &unused); };
+  const auto compare = [&](auto* values, const auto& by_values) {
+    for (int i = 0; i < values->size(); ++i) {
+      double& v = values->data()[i];
+      const double kept = v;
+      v = kept + kStep;
+      const double up = value();
+      v = kept - kStep;
+      const double down = value();
+      v = kept;
+      EXPECT_NEAR((up - down) / (2 * kStep), by_values.data()[i], 1e-6);
+    }
+  };
+  compare(&cloud.center, gradient.center);
+  compare(&cloud.rotation, gradient.rotation);
+}
+
+TEST(SurfelDensity, ClonesThoseThatArePulledHardestAlongTheirLongerAxis) {
+  SurfelSet set = plane(2);
+  set.values(SurfelSet::kLogScale, 2) = std::log(0.3);
+  set.values(SurfelSet::kLogScale + 1, 2) = std::log(0.1);
+  Eigen::Matrix2Xd pull = Eigen::Matrix2Xd::Zero(2, 4);
+  pull.col(1) << 0.1, 0;
+  pull.col(2) << 0, -3;
+  const DensityChange change = clone_split(set, pull, Eigen::VectorXd::Ones(4), 0.05, 1e-3, 1);
+  EXPECT_EQ(change.split, 1);
+  EXPECT_EQ(change.kept, (std::vector<int>{0, 1, 3}));
+  ASSERT_EQ(change.added.cols(), 2);
+  const Eigen::VectorXd apart = change.added.col(1) - change.added.col(0);
+  EXPECT_NEAR(apart.segment<3>(SurfelSet::kCenter).norm(), 2 * 0.8 * 0.3, 1e-9);
+  const Eigen::VectorXd middle = 0.5 * (change.added.col(0) + change.added.col(1));
+  EXPECT_LT((middle - set.values.col(2)).segment<3>(SurfelSet::kCenter).norm(), 1e-12);
+  EXPECT_NEAR(std::exp(change.added(SurfelSet::kLogScale, 0)), 0.3 / 1.6, 1e-9);
+  EXPECT_NEAR(std::exp(change.added(SurfelSet::kLogScale + 1, 1)), 0.1 / 1.6, 1e-9);
+}
+
 TEST(SurfelDensity, SplitsOnlyAlongNegativeEigenvaluesAndHalvesOpacity) {
   const SurfelSet set = plane(2);
   Eigen::Matrix3Xd splitting = Eigen::Matrix3Xd::Zero(3, 4);
@@ -194,6 +240,9 @@ TEST(SurfelDensity, MergesPairsThatDoTheSameWorkBetweenThem) {
   EXPECT_EQ(change.kept, (std::vector<int>{1, 3}));
   EXPECT_NEAR(change.added(SurfelSet::kCenter + 1, 0), 0.5, 1e-12);
   EXPECT_GT(change.added(SurfelSet::kLogScale + 1, 0), set.values(SurfelSet::kLogScale + 1, 0));
+  const auto alpha = [](double logit) { return 1 / (1 + std::exp(-logit)); };
+  EXPECT_NEAR(alpha(change.added(SurfelSet::kOpacity, 0)), 1 - std::pow(1 - alpha(2), 2), 1e-9)
+      << "what both let through";
 }
 
 TEST(SurfelSet, BacksOfSurfelsAreNotSeen) {

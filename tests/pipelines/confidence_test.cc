@@ -149,6 +149,23 @@ TEST(Confidence, RisesWithTheEvidence) {
   }
 }
 
+// What calibration gave, for strokes by which every coefficient counts: one that is off by a third
+// is off by more than this in one of them. Whoever calibrates anew writes anew.
+TEST(Confidence, IsAsItWasCalibrated) {
+  StrokeFeatures f;
+  f.outline = 0.25, f.sigma = 0.5, f.determined = 1, f.contrast = 2, f.joined = 1, f.support = 0.5;
+  f.view_share = 0.6, f.rms_px = 0.25;
+  const auto odds = [&](bool outlines) {
+    const double p = probability_of_edge(f, outlines);
+    return std::log(p / (1 - p));
+  };
+  EXPECT_NEAR(odds(true), 0.210, 0.01);
+  EXPECT_NEAR(odds(false), -2.2406, 0.01);
+  f.contrast = 0.25, f.joined = 0.5, f.sigma = 4;
+  EXPECT_NEAR(odds(true), -2.761, 0.01);
+  EXPECT_NEAR(odds(false), -1.7656, 0.01);
+}
+
 TEST(Evidence, NamesTheViewsThatSeeAStroke) {
   const Sketch truth = line_circle_cubic();
   const std::vector<View> views = ring_of_views(8, kMiddle, 3);

@@ -53,6 +53,29 @@ TEST(Gap, WhereViewsThatMustSeeOneSeeNoneItCosts) {
   for (const bool masks : {false, true}) EXPECT_GT(cost(world_of(masks), 0.4, 0.6), 1) << masks;
 }
 
+// A place that no view shows an edge at, of n that must: n log((1 - rate) / (1 - chance)).
+TEST(Gap, IsTheSumOverPlacesAndViewsAtTheRateOfWhatIsKnown) {
+  Sketch s;
+  add_line(&s, kBegin, kEnd);
+  const auto unseen = [&](bool masks, double seen_rate, double found_rate) {
+    const EdgeWorld world = world_of(masks);
+    GapOptions options;
+    options.seen_rate = seen_rate, options.found_rate = found_rate;
+    const double length = 0.2 * (kEnd - kBegin).norm();
+    return gap_cost(StrokeKind::kLine, control_points(s, 0), 0.4, 0.6, length, world, options) /
+           (places(world, 0.2));
+  };
+  for (const bool masks : {false, true}) {
+    const double a = unseen(masks, 0.05, 0.05), b = unseen(masks, 0.05, 0.06),
+                 c = unseen(masks, 0.06, 0.05);
+    EXPECT_EQ(a == b, masks) << "without masks nobody knows what may hide it";
+    EXPECT_EQ(a == c, !masks);
+    const double more = masks ? c : b;
+    EXPECT_NEAR(more / a, std::log(0.94 / 0.97) / std::log(0.95 / 0.97), 0.05);
+  }
+  EXPECT_NEAR(unseen(false, 0.05, 0.05), -16 * std::log(0.95 / 0.97), 0.1) << "of sixteen views";
+}
+
 TEST(Gap, LongerGapsCostMore) {
   const EdgeWorld world = world_of(false);
   EXPECT_NEAR(cost(world, 0.4, 0.6), 2 * cost(world, 0.4, 0.5), 4);

@@ -92,6 +92,18 @@ TEST(SurfelDetector, FindsEdgesOfTheShapeBelowItsPrint) {
   EXPECT_GT(surfels.edges.precision, pictures.edges.precision + 0.25);
 }
 
+TEST(SurfelDetector, TheWholeMethodFindsTheCurvesOfAPrintedPart) {
+  const Rendered part(Style::kTextured, 16, 160);
+  const DetectionOptions small = small_options(300);
+  ReconstructOptions options;
+  static_cast<DetectionOptions&>(options) = small;
+  options.solid = "off";
+  const Sketch sketch = reconstruct(part.scene, options, nullptr).sketch;
+  const double f5 = test::f_at(test::score(sketch, part.scene.folder).fine, 0.005);
+  RecordProperty("f5", std::to_string(f5));
+  EXPECT_GT(f5, 82) << "87.5 when this was written";
+}
+
 TEST(SurfelDetector, FindsTheShapeOfPlainFaces) {
   const Rendered part(Style::kPlain, 16, 160);
   const Worth plain = worth(part.scene, small_options(300));
