@@ -133,15 +133,15 @@ bool VisualHull::surely_visible(const Eigen::Vector3d& point, const Eigen::Vecto
   return true;
 }
 
-bool VisualHull::clip(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double* s0,
-                      double* s1) const {
+bool VisualHull::clip(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                      double around, double* s0, double* s1) const {
   if (empty()) return true;
-  const double step = 0.5 * cell_, around = kSurroundings * cell_;
+  const double step = 0.5 * cell_;
   double first = *s0, last = *s1;
   while (first <= last && at(origin + first * direction) == kNone) first += step;
   while (first <= last && at(origin + last * direction) == kNone) last -= step;
   if (first > last) return false;
-  *s0 = std::max(*s0, first - around), *s1 = std::min(*s1, last + around);
+  *s0 = std::max(*s0, first - around * cell_), *s1 = std::min(*s1, last + around * cell_);
   return true;
 }
 

@@ -24,11 +24,11 @@ class VisualHull {
   /// Does nothing of the hull stand between the point and the camera, but for the hull's surface
   /// in the point's own surroundings (two and a half cells)? False if the hull is empty.
   bool surely_visible(const Eigen::Vector3d& point, const Eigen::Vector3d& camera) const;
-  /// Narrows an interval of s to where origin + s * direction (unit) lies in the hull or in its
-  /// surroundings; what lies between two parts of it stays. False if it meets none of it. An empty
-  /// hull narrows nothing.
-  bool clip(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double* s0,
-            double* s1) const;
+  /// Narrows an interval of s to where origin + s * direction (unit) lies in the hull or `around`
+  /// cells before or behind it; what lies between two parts of it stays. False if it meets none of
+  /// it. An empty hull narrows nothing.
+  bool clip(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double around,
+            double* s0, double* s1) const;
 
  private:
   uint8_t at(const Eigen::Vector3d& p) const;

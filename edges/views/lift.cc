@@ -17,6 +17,8 @@ constexpr int kBins = 8;  // directions of the tangent inside the plane of its e
 
 constexpr double kMatchPx = 1.5;  // largest distance of an edgel that supports a depth
 constexpr double kInlierPx = 1;   // the same after the point was refined
+// Cells of the hull about what it holds of a ray: silhouettes are coarser than masks.
+constexpr double kAroundMasks = 2.5, kAroundSilhouettes = 8;
 constexpr double kAngleDeg = 12;  // largest angle of its plane to the tangent
 
 using Matrix34f = Eigen::Matrix<float, 3, 4>;
@@ -151,7 +153,8 @@ bool Sweeper::make_ray(int view, const Edgel& e, Ray* ray) const {
   ray->e1 = (along - ray->e2 * ray->e2.dot(along)).normalized();
   double s1;
   if (!clip(world_.bounds, ray->center, ray->direction, &ray->s0, &s1)) return false;
-  if (!world_.hull.clip(ray->center, ray->direction, &ray->s0, &s1)) return false;
+  const double around = world_.silhouettes ? kAroundSilhouettes : kAroundMasks;
+  if (!world_.hull.clip(ray->center, ray->direction, around, &ray->s0, &s1)) return false;
   ray->step = world_.footprint;
   ray->count = int(std::min(4095.0, (s1 - ray->s0) / ray->step)) + 1;
   return true;

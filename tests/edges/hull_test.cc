@@ -58,14 +58,14 @@ TEST(VisualHull, ALineOfSightIsCutToWhereTheHullIs) {
   constexpr double kCells = 4.0 / 64;
   const Vector3d above(0.5, 0.5, 3.5), down(0, 0, -1);
   double s0 = 0, s1 = 10;
-  ASSERT_TRUE(hull.clip(above, down, &s0, &s1));
+  ASSERT_TRUE(hull.clip(above, down, 2.5, &s0, &s1));
   EXPECT_NEAR(s0, 2.7, kCells);
   EXPECT_NEAR(s1, 3.3, kCells);
   EXPECT_LT(s0, 2.7);
   EXPECT_GT(s1, 3.3);
   s0 = 0, s1 = 10;
-  EXPECT_FALSE(hull.clip(above, Vector3d(1, 0, -1).normalized(), &s0, &s1)) << "it passes by";
-  EXPECT_TRUE(VisualHull().clip(above, down, &s0, &s1));
+  EXPECT_FALSE(hull.clip(above, Vector3d(1, 0, -1).normalized(), 2.5, &s0, &s1)) << "it passes by";
+  EXPECT_TRUE(VisualHull().clip(above, down, 2.5, &s0, &s1));
   EXPECT_EQ(s0, 0) << "no hull tells nothing";
   EXPECT_EQ(s1, 10);
 }
