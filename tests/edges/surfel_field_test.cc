@@ -31,6 +31,22 @@ Illumination random_light() {
   return light;
 }
 
+// `by_values` against central differences of `value` by every one of `values`.
+template <typename Values, typename Slopes, typename Value>
+void compare_slopes(Values* values, const Slopes& by_values, const Value& value) {
+  constexpr double kStep = 1e-5;
+  for (int i = 0; i < values->size(); ++i) {
+    double& v = values->data()[i];
+    const double kept = v;
+    v = kept + kStep;
+    const double up = value();
+    v = kept - kStep;
+    const double down = value();
+    v = kept;
+    EXPECT_NEAR((up - down) / (2 * kStep), by_values.data()[i], 1e-6);
+  }
+}
+
 TEST(SurfelShading, GradientIsThatOfFiniteDifferences) {
   SurfelCloud cloud = random_cloud(4);
   Illumination light = random_light();
@@ -41,20 +57,8 @@ TEST(SurfelShading, GradientIsThatOfFiniteDifferences) {
   Eigen::Matrix3Xd by_albedo;
   Eigen::Matrix<double, kShadingTerms, 4> by_light;
   shade_backward(cloud, albedo, light, &gradient, &by_albedo, &by_light);
-  const double h = 1e-5;
   const auto value = [&] { return shade(cloud, albedo, light).cwiseProduct(by_color).sum(); };
-  const auto compare = [&](auto* values, const auto& by_values) {
-    for (int i = 0; i < values->size(); ++i) {
-      double& v = values->data()[i];
-      const double kept = v;
-      v = kept + h;
-      const double up = value();
-      v = kept - h;
-      const double down = value();
-      v = kept;
-      EXPECT_NEAR((up - down) / (2 * h), by_values.data()[i], 1e-6);
-    }
-  };
+  const auto compare = [&](auto* values, const auto& by) { compare_slopes(values, by, value); };
   compare(&cloud.rotation, gradient.rotation);
   compare(&cloud.center, gradient.center);
   compare(&albedo, by_albedo);
@@ -166,21 +170,10 @@ TEST(SurfelSmoothness, GradientIsThatOfFiniteDifferences) {
   const std::vector<std::pair<int, int>> pairs = {{0, 1}, {1, 2}, {3, 4}, {0, 4}};
   SurfelCloud gradient = SurfelCloud::zero(5), unused = gradient;
   // So wide an edge that the weights of the pairs, which are no part of the gradient, stay.
-  constexpr double kEdgeDeg = 1e6, kStep = 1e-5;
+  constexpr double kEdgeDeg = 1e6;
   smooth_gradient(cloud, pairs, 0.5, kEdgeDeg, 3, &gradient);
   const auto value = [&] { return smooth_gradient(cloud, pairs, 0.5, kEdgeDeg, 3, &unused); };
-  const auto compare = [&](auto* values, const auto& by_values) {
-    for (int i = 0; i < values->size(); ++i) {
-      double& v = values->data()[i];
-      const double kept = v;
-      v = kept + kStep;
-      const double up = value();
-      v = kept - kStep;
-      const double down = value();
-      v = kept;
-      EXPECT_NEAR((up - down) / (2 * kStep), by_values.data()[i], 1e-6);
-    }
-  };
+  const auto compare = [&](auto* values, const auto& by) { compare_slopes(values, by, value); };
   compare(&cloud.center, gradient.center);
   compare(&cloud.rotation, gradient.rotation);
 }
