@@ -28,16 +28,24 @@ Scene with_smaller_pictures(const Scene& scene, int least_side) {
   return out;
 }
 
+std::vector<int> places_in(const Scene& scene, const std::vector<View>& views) {
+  std::vector<int> places;
+  size_t i = 0;
+  for (const View& view : views) {
+    while (scene.views.at(i).name != view.name || scene.views[i].image_path != view.image_path) ++i;
+    places.push_back(int(i++));
+  }
+  return places;
+}
+
 std::vector<View> at_full_size(const std::vector<View>& views, const Scene& smaller,
                                const Scene& scene) {
   std::vector<View> out;
-  size_t i = 0;
-  for (const View& from : views) {
-    while (i < smaller.views.size() && (smaller.views[i].name != from.name ||
-                                        smaller.views[i].image_path != from.image_path))
-      ++i;
-    View view = scene.views.at(i);
-    const int factor = int(std::lround(view.camera.fx / smaller.views[i++].camera.fx));
+  const std::vector<int> places = places_in(smaller, views);
+  for (size_t v = 0; v < views.size(); ++v) {
+    const View& from = views[v];
+    View view = scene.views.at(places[v]);
+    const int factor = int(std::lround(view.camera.fx / smaller.views[places[v]].camera.fx));
     view.camera = from.camera.enlarged(factor, view.camera.width, view.camera.height);
     view.cam_from_world = from.cam_from_world;
     view.lens = from.lens;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace sketchsplat {
@@ -13,6 +14,13 @@ Number median(std::vector<Number> values) {
   const auto middle = values.begin() + values.size() / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Standard deviation of normal numbers of mean 0, from their absolute values: outliers do not
+/// matter (Hampel: The influence curve and its role in robust estimation, JASA 1974). 0 of none.
+template <class Number>
+double normal_sigma(std::vector<Number> absolute) {
+  return 1.4826 * median(std::move(absolute));
 }
 
 }  // namespace sketchsplat

@@ -173,7 +173,7 @@ double scatter(const std::vector<Measured>& all) {
   std::vector<double> size;
   for (const Measured& m : all)
     for (const double o : m.offset) size.push_back(std::abs(o - m.shift));
-  return std::max(1.4826 * median(size), 1e-3);
+  return std::max(normal_sigma(size), 1e-3);
 }
 
 Equations equations(std::vector<Measured>* all, double sigma) {

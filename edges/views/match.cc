@@ -107,7 +107,7 @@ void make_exclusive(const CurvePoints& samples, size_t num_edgels, bool between,
 double robust_sigma(const std::vector<SampleMatch>& matches) {
   std::vector<float> d;
   for (const SampleMatch& m : matches) d.push_back(std::abs(m.distance_px));
-  return 1.4826 * median(std::move(d));
+  return normal_sigma(std::move(d));
 }
 
 }  // namespace
