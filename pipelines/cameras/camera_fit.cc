@@ -4,11 +4,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "datasets/types/median.h"
+#include "pipelines/cameras/halves.h"
 #include "pipelines/cameras/point_prior.h"
 #include "sketches/curve/curve.h"
 
@@ -175,9 +175,9 @@ void System::weigh() {
   std::vector<double> within, common;
   for (size_t i = 0; i < rows_.size(); ++i)
     within.push_back(std::abs(d[i] - sum[rows_[i].offset] / weight[rows_[i].offset]));
-  scatter_ = std::max(kLeastSigma, 1.4826 * median(within));
+  scatter_ = std::max(kLeastSigma, normal_sigma(within));
   for (int k = 0; k < offsets_; ++k) common.push_back(std::abs(sum[k] / weight[k]));
-  offset_sigma_ = std::max(kLeastSigma, 1.4826 * median(common));
+  offset_sigma_ = std::max(kLeastSigma, normal_sigma(common));
   for (Row& row : rows_) {
     const double r = sum[row.offset] / weight[row.offset] / (kBiweight * offset_sigma_);
     row.weight *= r * r < 1 ? std::pow(1 - r * r, 2) : 0;
@@ -328,7 +328,7 @@ double System::offset_px() const {
     weight[rows_[i].offset] += rows_[i].match;
   }
   for (int k = 0; k < offsets_; ++k) offset.push_back(std::abs(sum[k] / weight[k]));
-  return 1.4826 * median(offset);
+  return normal_sigma(offset);
 }
 
 // How errors of the cameras grow the strokes about their middle: these follow the cameras, dx =
@@ -396,34 +396,6 @@ Sketch System::meet(const Sketch& joined) const {
   return out;
 }
 
-// What halves of the strokes say of some unknowns, and what confirms it.
-struct Confirmed {
-  double sigmas = 0, told = 0;  // told: the sum of squares that it explains
-};
-Confirmed confirm(const std::array<MatrixXd, 2>& hessian, const std::array<VectorXd, 2>& gradient,
-                  const MatrixXd& information) {
-  Confirmed out;
-  for (const int half : {0, 1}) {
-    const MatrixXd held = hessian[1 - half] + information;
-    const VectorXd move = -held.ldlt().solve(gradient[1 - half]);
-    const double fits = -move.dot(gradient[half]), spread = move.dot(hessian[half] * move);
-    if (!(spread > 0)) continue;
-    out.sigmas += fits / std::sqrt(2 * spread);
-    out.told += fits;
-  }
-  return out;
-}
-
-// How much more alike the gradients of two halves are than by chance, in standard deviations: of
-// independent ones, a.M.b has variance tr(M A M B), for any M; this one is that of all strokes.
-double alike(const std::array<MatrixXd, 2>& hessian, const std::array<VectorXd, 2>& gradient,
-             const MatrixXd& information) {
-  const MatrixXd both = hessian[0] + hessian[1] + information;
-  const Eigen::LDLT<MatrixXd> inverse(both);
-  const double variance = (inverse.solve(hessian[0]) * inverse.solve(hessian[1])).trace();
-  return variance > 0 ? gradient[0].dot(inverse.solve(gradient[1])) / std::sqrt(variance) : 0;
-}
-
 CameraEvidence System::evidence() {
   std::vector<Linear> rows;
   linearise(&rows);
@@ -433,27 +405,26 @@ CameraEvidence System::evidence() {
   const MatrixXd prior_shared =  // poses are free in it
       information.bottomRightCorner(shared, shared) -
       prior_cross.transpose() * information.topLeftCorner(poses, poses).ldlt().solve(prior_cross);
-  std::array<MatrixXd, 2> of_poses, of_shared;
-  std::array<VectorXd, 2> by_poses, by_shared;
+  Halves of_poses, of_shared;
   for (const int half : {0, 1}) {
     assemble(rows, 0, half);
     gradient_ -= prior_.gradient + information * now_.cameras;
     const auto cross = hessian_.topRightCorner(poses, shared);
     const MatrixXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross);
-    of_shared[half] = hessian_.bottomRightCorner(shared, shared) - cross.transpose() * follow;
-    of_shared[half] -= prior_shared;
-    by_shared[half] = gradient_.tail(shared) - follow.transpose() * gradient_.head(poses);
-    of_poses[half] = hessian_.topLeftCorner(poses, poses);
-    of_poses[half] -= information.topLeftCorner(poses, poses);
-    by_poses[half] = gradient_.head(poses);
+    of_shared.hessian[half] =
+        hessian_.bottomRightCorner(shared, shared) - cross.transpose() * follow;
+    of_shared.hessian[half] -= prior_shared;
+    of_shared.gradient[half] = gradient_.tail(shared) - follow.transpose() * gradient_.head(poses);
+    of_poses.hessian[half] = hessian_.topLeftCorner(poses, poses);
+    of_poses.hessian[half] -= information.topLeftCorner(poses, poses);
+    of_poses.gradient[half] = gradient_.head(poses);
   }
-  const Confirmed moved =
-      confirm(of_poses, by_poses, information.topLeftCorner(poses, poses));
+  const Confirmed moved = confirm(of_poses, information.topLeftCorner(poses, poses));
   CameraEvidence out;
   out.offset_px = before_;
   out.poses = moved.sigmas;
   out.error_px = offset_sigma_ * std::sqrt(std::max(0.0, moved.told) / std::max(1, offsets_));
-  if (shared > 0) out.shared = alike(of_shared, by_shared, prior_shared);
+  if (shared > 0) out.shared = alike(of_shared, prior_shared);
   return out;
 }
 

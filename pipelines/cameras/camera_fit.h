@@ -44,8 +44,10 @@ CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, cons
 struct CameraEvidence {
   double offset_px = 0;  ///< robust standard deviation of the offsets of strokes in views
   double error_px = 0;   ///< root mean square of that part of the offsets which poses make
-  double poses = 0;      ///< standard normal, if poses are exact and strokes err by themselves
-  double shared = 0;     ///< the same if what views share is right, of poses within the prior
+  /// Confirmed::sigmas, if poses are exact and strokes err by themselves: normal, mean 0, variance
+  /// 1 to 2.
+  double poses = 0;
+  double shared = 0;  ///< standard normal if what views share is right, of poses within the prior
 };
 
 /// Two halves of the strokes each say how the cameras err, and each is asked whether that fits its

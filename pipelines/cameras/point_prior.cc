@@ -43,13 +43,13 @@ std::vector<SightTerm> terms_of(const CameraUnknowns& cameras, const ScenePoint&
   return terms;
 }
 
-// 1.4826 times the median of what a normal error has in one direction.
+// Of all sights, in one direction.
 double scatter_px(const std::vector<std::vector<SightTerm>>& of_point) {
   std::vector<double> apart;
   for (const auto& terms : of_point)
     for (const SightTerm& term : terms)
       for (const double r : {term.residual.x(), term.residual.y()}) apart.push_back(std::abs(r));
-  return apart.empty() ? kLeastSigma : std::max(kLeastSigma, 1.4826 * median(apart));
+  return apart.empty() ? kLeastSigma : std::max(kLeastSigma, normal_sigma(apart));
 }
 
 // Where the unknowns of a sight's camera stand among all: its pose, then what it shares.
@@ -124,15 +124,10 @@ CameraQuadratic point_prior(const CameraUnknowns& cameras, const std::vector<Sce
 }
 
 std::vector<ScenePoint> points_among(const std::vector<View>& views, const Scene& scene) {
+  if (scene.points.empty()) return {};
   std::vector<int> index(scene.views.size(), -1);
-  size_t i = 0;
-  for (size_t v = 0; v < views.size(); ++v, ++i) {
-    while (i < index.size() && (scene.views[i].name != views[v].name ||
-                                scene.views[i].image_path != views[v].image_path))
-      ++i;
-    if (i == index.size()) break;
-    index[i] = int(v);
-  }
+  const std::vector<int> places = places_in(scene, views);
+  for (size_t v = 0; v < places.size(); ++v) index[places[v]] = int(v);
   std::vector<ScenePoint> out;
   for (const ScenePoint& point : scene.points) {
     ScenePoint seen{point.position, {}};

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kReachPx = 2, kSpacingPx = 6;
 constexpr double kErrPx = 0.075;      // what poses that err less make of strokes is no matter
-constexpr double kRare = 1.645;       // standard deviations: exact poses in one scene of twenty
+constexpr double kRare = 1.645;       // exact poses in one scene of eight to twenty
 constexpr double kSure = 4;           // of what views share, which changes scale and place
 constexpr double kExactPx = 0.02;     // poses err at least by this
 constexpr double kLoose = 3;          // times the offsets, which do not reach beyond the matches

@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "pipelines/cameras/refine_poses.h"
 #include "tests/support/strokes.h"
