@@ -39,9 +39,10 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 
 // The method. Images, no larger than it takes, become edgels: without masks, those of the object
 // that the cameras look at, whose silhouettes are told first. Edgels become points in space, points
-// strokes, and these tell whether the cameras err; then rounds of drawing the strokes into the
-// views, moving them and simplifying the graph, until nothing changes; and the same once more with
-// what is found in the edgels that are left. With siblings of the part, their family's strokes,
+// strokes, and these, with the points that structure from motion found, tell whether the cameras
+// err; then rounds of moving the strokes (by what their drawings differ in, if asked, and by least
+// squares) and simplifying the graph, until nothing changes; and the same once more with what is
+// found in the edgels that are left. With siblings of the part, their family's strokes,
 // moved onto the edgels, come first, and the rest is for edgels that are left. Then the edges that
 // the strokes lead to expect, where the pictures show them. At last, the solid that the strokes
 // bound, if they tell one, and its edges that no picture shows.

@@ -56,7 +56,8 @@ Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& 
                   RunReport* report, Progress* progress);
 
 /// Rounds, until the graph does not change any more or `options` say so: strokes are drawn and
-/// moved (optimize), weighed, and the graph is simplified.
+/// moved (optimize) if `options` have steps, weighed, and the graph is simplified; what it says
+/// then is moved by least squares.
 Sketch run_rounds(Sketch sketch, const EdgeWorld& world, const std::vector<EdgeTarget>& targets,
                   const ReconstructOptions& options, RunReport* report, Progress* progress);
 
