@@ -10,8 +10,15 @@ namespace {
 std::vector<float> block_means(const std::vector<float>& plane, int width, int height, int d) {
   const int w = (width + d - 1) / d, h = (height + d - 1) / d;
   std::vector<float> out(size_t(w) * h);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) out[size_t(y / d) * w + x / d] += plane[size_t(y) * width + x];
+  for (int y = 0; y < height; ++y) {
+    const float* row = &plane[size_t(y) * width];
+    float* sums = &out[size_t(y / d) * w];
+    for (int i = 0; i < w; ++i) {
+      float sum = sums[i];
+      for (int x = i * d; x < std::min(width, (i + 1) * d); ++x) sum += row[x];
+      sums[i] = sum;
+    }
+  }
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const int rows = std::min(d, height - y * d), columns = std::min(d, width - x * d);
