@@ -87,6 +87,7 @@ Picture read_picture(const View& view, int denominator) {
   const bool says = std::any_of(alpha.begin(), alpha.end(), [](float a) { return a < 1; });
   if (!view.mask_path.empty() && (view.mask_over_alpha || !says))
     picture.alpha = read_mask(view, denominator);
+  if (view.when_read) view.when_read(picture);
   return picture;
 }
 

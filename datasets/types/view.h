@@ -25,6 +25,8 @@ struct View {
   Lens lens;
   /// The image, from any thread, if it is no file; `image_path` is a name then.
   std::function<Picture()> make_picture;
+  /// Told of every picture of the view that is read, whole or reduced, from any thread.
+  std::function<void(const Picture&)> when_read;
 
   Eigen::Vector3d center_in_world() const {
     return -(cam_from_world.rotation.transpose() * cam_from_world.translation);

@@ -2,10 +2,12 @@
 #include "pipelines/pages/page_photos.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/io/jpeg_codec.h"
+#include "datasets/readers/smaller_pictures.h"
 #include "datasets/types/errors.h"
 #include "pipelines/pages/overlay.h"
 
@@ -17,40 +19,33 @@ constexpr int kLongest = 640;           // [px] of a photograph
 constexpr double kBytesPerPixel = 0.2;  // of most photographs at this quality
 constexpr int kQuality = 75;
 
+// By which a picture may be reduced when it is read.
+int denominator_of(const View& view, const cv::Size& size) {
+  int denominator = 1;
+  while (denominator < 8 && view.camera.width >= 2 * denominator * size.width &&
+         view.camera.height >= 2 * denominator * size.height)
+    denominator *= 2;
+  return denominator;
+}
+
 int longest_side(const View& view) { return std::max({view.camera.width, view.camera.height, 1}); }
 
-// 8 bit RGB on white, at most `longest` px wide and high.
-cv::Mat small_picture(const View& view, int longest) {
-  int denominator = 1;
-  while (denominator < 8 && longest_side(view) >= 2 * denominator * longest) denominator *= 2;
-  Picture picture = read_picture(view, denominator);
-  const double scale = std::min(1.0, double(longest) / longest_side(view));
-  const cv::Size size(std::max(1, int(std::lround(view.camera.width * scale))),
-                      std::max(1, int(std::lround(view.camera.height * scale))));
+// 8 bit RGB on white.
+cv::Mat small_picture(const Picture& picture, const cv::Size& size) {
   std::vector<cv::Mat> channels;
-  for (Image<float>* channel : {&picture.red, &picture.green, &picture.blue}) {
-    for (size_t i = 0; i < channel->data.size() && !picture.alpha.empty(); ++i)
-      channel->data[i] = channel->data[i] * picture.alpha.data[i] + 1 - picture.alpha.data[i];
+  for (const Image<float>* channel : {&picture.red, &picture.green, &picture.blue}) {
+    std::vector<float> on_white = channel->data;
+    for (size_t i = 0; i < on_white.size() && !picture.alpha.empty(); ++i)
+      on_white[i] = on_white[i] * picture.alpha.data[i] + 1 - picture.alpha.data[i];
     cv::Mat reduced, bytes;
-    cv::resize(cv::Mat(channel->height, channel->width, CV_32F, channel->data.data()), reduced,
-               size, 0, 0, cv::INTER_AREA);
+    cv::resize(cv::Mat(channel->height, channel->width, CV_32F, on_white.data()), reduced, size, 0,
+               0, cv::INTER_AREA);
     reduced.convertTo(bytes, CV_8U, 255);
     channels.push_back(bytes);
   }
   cv::Mat out;
   cv::merge(channels, out);
   return out;
-}
-
-// Empty if there is none.
-std::string jpeg_of(const View& view, int longest) {
-  std::string bytes, found;
-  try {
-    const cv::Mat rows = small_picture(view, longest);
-    encode_jpeg(rows.data, rows.cols, rows.rows, kQuality, &bytes, &found);
-  } catch (const InputError&) {
-  }
-  return bytes;
 }
 
 // So long that `count` pictures of this shape fit.
@@ -77,17 +72,67 @@ void thin_out(std::vector<PagePhoto>* photos) {
 
 }  // namespace
 
-std::vector<PagePhoto> page_photos(const Scene& scene, const Eigen::Vector3d& target) {
-  const std::vector<int> chosen = spread_views(scene.views, target, kMostPhotos);
-  const int n = int(chosen.size());
-  std::vector<PagePhoto> all(n), photos;
-#pragma omp parallel for schedule(dynamic)
-  for (int i = 0; i < n; ++i) {
-    const View& view = scene.views[chosen[i]];
-    all[i] = {view, jpeg_of(view, side_that_fits(view, n))};
+// One slot per view that is shown.
+struct PhotoAlbum::Copies {
+  struct Slot {
+    cv::Size size;
+    std::atomic<bool> taken{false};
+    std::string jpeg;
+  };
+  explicit Copies(size_t count) : slots(count) {}
+
+  // Once; of a picture that is large enough.
+  void keep(const Picture& picture, int k) {
+    Slot& slot = slots[k];
+    if (picture.width() < slot.size.width || picture.height() < slot.size.height) return;
+    if (slot.taken.exchange(true)) return;
+    const cv::Mat rows = small_picture(picture, slot.size);
+    std::string found;
+    encode_jpeg(rows.data, rows.cols, rows.rows, kQuality, &slot.jpeg, &found);
   }
-  for (PagePhoto& photo : all)
-    if (!photo.jpeg.empty()) photos.push_back(std::move(photo));
+
+  std::vector<Slot> slots;
+};
+
+PhotoAlbum::PhotoAlbum(const Scene& scene, const Eigen::Vector3d& target)
+    : scene_(scene),
+      chosen_(spread_views(scene.views, target, kMostPhotos)),
+      copies_(std::make_shared<Copies>(chosen_.size())) {
+  for (size_t k = 0; k < chosen_.size(); ++k) {
+    const View& view = scene.views[chosen_[k]];
+    const int longest = side_that_fits(view, int(chosen_.size()));
+    const double scale = std::min(1.0, double(longest) / longest_side(view));
+    const auto reduced = [&](int side) { return std::max(1, int(std::lround(side * scale))); };
+    copies_->slots[k].size = {reduced(view.camera.width), reduced(view.camera.height)};
+  }
+}
+
+Scene PhotoAlbum::watched() const {
+  Scene out = scene_;
+  for (size_t k = 0; k < chosen_.size(); ++k)
+    out.views[chosen_[k]].when_read = [copies = copies_, k](const Picture& picture) {
+      copies->keep(picture, int(k));
+    };
+  return out;
+}
+
+std::vector<PagePhoto> PhotoAlbum::photos(const std::vector<View>& views) const {
+  std::vector<const View*> known(scene_.views.size(), nullptr);
+  const std::vector<int> places = places_in(scene_, views);
+  for (size_t v = 0; v < views.size(); ++v) known[places[v]] = &views[v];
+  std::vector<PagePhoto> photos;
+#pragma omp parallel for schedule(dynamic)
+  for (int k = 0; k < int(chosen_.size()); ++k) {
+    const View& view = scene_.views[chosen_[k]];
+    if (!known[chosen_[k]] || copies_->slots[k].taken) continue;
+    try {
+      copies_->keep(read_picture(view, denominator_of(view, copies_->slots[k].size)), k);
+    } catch (const InputError&) {
+    }
+  }
+  for (size_t k = 0; k < chosen_.size(); ++k)
+    if (known[chosen_[k]] && !copies_->slots[k].jpeg.empty())
+      photos.push_back({*known[chosen_[k]], copies_->slots[k].jpeg});
   thin_out(&photos);
   return photos;
 }

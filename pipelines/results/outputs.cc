@@ -204,8 +204,9 @@ StepOptions step_options(const Sketch& sketch, const std::string& name, const Ca
 }
 
 KnownScale write_outputs(const std::string& folder, Reconstruction reconstruction,
-                         const Scene& scene, ReconstructOptions reconstruct_options,
-                         OutputOptions output_options, Progress* progress) {
+                         const Scene& scene, const PhotoAlbum& album,
+                         ReconstructOptions reconstruct_options, OutputOptions output_options,
+                         Progress* progress) {
   // sketch.json holds what decides the sketch; the report all options.
   Fields method;
   method.add("seed", &reconstruct_options.seed, "", 0, HUGE_VAL, "");
@@ -232,7 +233,7 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
     const int overlays = write_overlays(folder, sketch, seen, output_options.overlays,
                                         &reconstruction.report, progress);
     page.viewpoints = viewpoints(reconstruction, seen);
-    if (overlays > 0) page.photos = page_photos(seen, sketch_extent(sketch).center);
+    if (overlays > 0) page.photos = album.photos(seen.views);
     stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +
                  " photographs");
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "pipelines/method/reconstruct.h"
+#include "pipelines/pages/page_photos.h"
 #include "pipelines/results/known_scale.h"
 #include "pipelines/stages/options.h"
 #include "sketches/io/io.h"
@@ -16,9 +17,11 @@ namespace sketchsplat {
 /// report.json and report.html. The time that this takes becomes a stage of the report. sketch.obj,
 /// STEP and tables are at the scale that is returned, the others in world units. Throws
 /// OutputError; TooLittleError, when all is written, if a solid is required and there is none.
+/// `album`: of the scene, photographs for the report.
 KnownScale write_outputs(const std::string& folder, Reconstruction reconstruction,
-                         const Scene& scene, ReconstructOptions reconstruct_options,
-                         OutputOptions output_options, Progress* progress);
+                         const Scene& scene, const PhotoAlbum& album,
+                         ReconstructOptions reconstruct_options, OutputOptions output_options,
+                         Progress* progress);
 
 /// What write_step is to be told for this sketch.
 StepOptions step_options(const Sketch& sketch, const std::string& name, const CadOptions& options);

@@ -12,6 +12,7 @@
 #include "datasets/readers/frame.h"
 #include "datasets/readers/open_options.h"
 #include "datasets/types/errors.h"
+#include "edges/views/lift.h"
 #include "pipelines/base/atomic_file.h"
 #include "pipelines/base/print_json.h"
 #include "pipelines/cameras/find_cameras.h"
@@ -19,6 +20,7 @@
 #include "pipelines/method/estimate.h"
 #include "pipelines/method/reconstruct.h"
 #include "pipelines/method/scene_tags.h"
+#include "pipelines/pages/page_photos.h"
 #include "pipelines/results/known_scale.h"
 #include "pipelines/results/outputs.h"
 
@@ -181,13 +183,15 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   RunReport before;
   const Scene scene = open_views(arguments, common, &before, progress);
   prepare_output_folder(arguments.out);
-  Reconstruction result = reconstruct(scene, arguments.method, progress);
+  const PhotoAlbum album(scene, meeting_point(scene.views));
+  Reconstruction result = reconstruct(arguments.output.overlays > 0 ? album.watched() : scene,
+                                      arguments.method, progress);
   RunReport& report = result.report;
   report.started = before.started;
   report.stages.insert(report.stages.begin(), before.stages.begin(), before.stages.end());
   report.warnings.insert(report.warnings.begin(), before.warnings.begin(), before.warnings.end());
-  const KnownScale scale =
-      write_outputs(arguments.out, result, scene, arguments.method, arguments.output, progress);
+  const KnownScale scale = write_outputs(arguments.out, result, scene, album, arguments.method,
+                                         arguments.output, progress);
   tell_result(result.sketch, result.snap, scale, arguments, common.json);
 }
 

@@ -180,7 +180,7 @@ TEST(PagePhotos, FitIntoAPageHoweverManyThereAre) {
     scene.views.back().camera = {320, 200, 100, 100, 159.5, 99.5};
   }
   scene.views[7].image_path = folder.file("missing.png");
-  const std::vector<PagePhoto> photos = page_photos(scene, {0, 0, 0});
+  const std::vector<PagePhoto> photos = PhotoAlbum(scene, {0, 0, 0}).photos(scene.views);
   size_t bytes = 0;
   for (const PagePhoto& photo : photos) bytes += photo.jpeg.size();
   EXPECT_GT(photos.size(), 20u);
@@ -202,12 +202,43 @@ TEST(PagePhotos, ShowThePictureOnWhite) {
   scene.views = {view_from(2)};
   scene.views[0].image_path = folder.file("a.png");
   scene.views[0].camera = {64, 32, 50, 50, 31.5, 15.5};
-  const std::vector<PagePhoto> photos = page_photos(scene, {0, 0, 0});
+  const std::vector<PagePhoto> photos = PhotoAlbum(scene, {0, 0, 0}).photos(scene.views);
   ASSERT_EQ(photos.size(), 1u);
   const Picture back = read_picture(folder.write("a.jpg", photos[0].jpeg));
   ASSERT_EQ(back.width(), 64);
   EXPECT_NEAR(back.red.at(8, 16), 0.2, 0.05);
   EXPECT_NEAR(back.red.at(56, 16), 1, 0.05);
+}
+
+TEST(PagePhotos, AreCopiesOfWhatOthersRead) {
+  const TempFolder folder;
+  Picture picture;
+  picture.red = picture.green = picture.blue = Image<float>(64, 32, 0.2f);
+  write_png(folder.file("a.png"), picture);
+  Scene scene;
+  scene.views = {view_from(2), view_from(3), view_from(4)};
+  for (View& view : scene.views) {
+    view.image_path = folder.file("a.png");
+    view.camera = {64, 32, 50, 50, 31.5, 15.5};
+  }
+  for (int k = 0; k < 3; ++k) scene.views[k].name = std::to_string(k);
+  const PhotoAlbum album(scene, {0, 0, 0});
+  const Scene watched = album.watched();
+  read_picture(watched.views[0], 2);  // too small for a photograph
+  read_picture(watched.views[1]);
+  picture.red = picture.green = picture.blue = Image<float>(64, 32, 0.8f);
+  write_png(folder.file("a.png"), picture);
+  read_picture(watched.views[1]);  // once is enough
+  std::vector<View> known = {scene.views[0], scene.views[1]};
+  known[1].camera.fx = 51;
+  const std::vector<PagePhoto> photos = album.photos(known);
+  ASSERT_EQ(photos.size(), 2u);
+  const auto brightness = [&](const PagePhoto& photo) {
+    return read_picture(folder.write("a.jpg", photo.jpeg)).red.at(8, 16);
+  };
+  EXPECT_NEAR(brightness(photos[0]), 0.8, 0.05);  // read late
+  EXPECT_NEAR(brightness(photos[1]), 0.2, 0.05);
+  EXPECT_EQ(photos[1].view.camera.fx, 51);
 }
 
 TEST(Extent, LooksAtTheCurveAndNotAtItsControlPoints) {
