@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # rules_test.sh SOURCE BUILD [RULE]: what holds of every file of the repository. Rules: licences,
-# packages, cgal, style_sheet, words, columns, folders.
+# packages, cgal, style_sheet, words, columns, folders, loops.
 set -uo pipefail
 build=$(readlink -f "$2")
 cd "$1"
@@ -96,6 +96,13 @@ folders() {  # code reads headers of its own folder, and of folders that its tar
         }' "$build/generated/folders" -)
 }
 
-for rule in ${3:-licences packages cgal style_sheet words columns folders}; do $rule; done
+loops() {  # an exception that leaves a parallel region of OpenMP ends the program
+  local line
+  while read -r line; do fail "$line: expected parallel_for of datasets/types/parallel.h"; done < <(
+    sources \( -name '*.cc' -o -name '*.h' \) | grep -v '^./datasets/types/parallel.h$' |
+      xargs grep -n '#pragma omp parallel')
+}
+
+for rule in ${3:-licences packages cgal style_sheet words columns folders loops}; do $rule; done
 [ $failed = 0 ] && echo passed
 exit $failed

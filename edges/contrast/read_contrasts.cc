@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -151,15 +153,14 @@ KnownEdges known_edges(const EdgeWorld& world, const CurvePoints& strokes,
                        const std::vector<std::vector<char>>& explained) {
   KnownEdges out;
   out.near.resize(world.maps.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(world.maps.size()); ++v) {
+  parallel_for(int(world.maps.size()), 1, [&](int v) {
     const EdgelMap& map = world.maps[v];
-    if (!map.grey) continue;
+    if (!map.grey) return;
     out.near[v] = Image<uint8_t>(map.width, map.height);
     for (size_t i = 0; i < map.edgels.size(); ++i)
       if (explained[v][i]) mark_around(map.edgels[i].x, map.edgels[i].y, 255, &out.near[v]);
     add_known(world, v, strokes, &out);
-  }
+  });
   return out;
 }
 

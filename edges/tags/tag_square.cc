@@ -9,6 +9,7 @@
 #include <map>
 
 #include "datasets/types/median.h"
+#include "datasets/types/parallel.h"
 #include "edges/tags/tag_edges.h"
 #include "sketches/solve/similarity.h"
 
@@ -242,9 +243,9 @@ std::vector<Measured> measure_all(const std::vector<View>& views,
                                   const std::vector<TagEdge>& edges, const TagSquare& square,
                                   double cell) {
   std::vector<Measured> all(patches.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < int(patches.size()); ++i)
+  parallel_for(int(patches.size()), 1, [&](int i) {
     all[i] = measure(views[patches[i]->view], *patches[i], edges, square, cell);
+  });
   return all;
 }
 

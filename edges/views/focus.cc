@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -56,8 +58,7 @@ EdgelMap most_meaningful(const EdgelMap& map, double most_edgels) {
 
 EdgeWorld focused(EdgeWorld world, const ObjectRegion& object, double most_sides) {
   std::vector<EdgelMap> maps(world.maps.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(maps.size()); ++v) {
+  parallel_for(int(maps.size()), 1, [&](int v) {
     const EdgelMap& map = world.maps[v];
     Eigen::AlignedBox2d box;
     maps[v] = map;
@@ -69,7 +70,7 @@ EdgeWorld focused(EdgeWorld world, const ObjectRegion& object, double most_sides
     }
     if (most_sides > 0)
       maps[v] = most_meaningful(maps[v], most_sides * std::sqrt(double(map.width) * map.height));
-  }
+  });
   EdgeWorld out = make_edge_world(std::move(world.views), std::move(maps));
   if (object.box.isEmpty()) return out;
   out.bounds = object.box;

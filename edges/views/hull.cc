@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/parallel.h"
 #include "edges/views/lift.h"
 
 namespace sketchsplat {
@@ -62,8 +63,7 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
     if (!mask_of(v).empty() && !world.maps[v].edgels.empty()) masked.push_back(int(v));
   if (masked.size() < 3 || world.bounds.isEmpty()) return;
   std::vector<Image<int>> sums(masked.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int m = 0; m < int(masked.size()); ++m) sums[m] = integral(mask_of(masked[m]));
+  parallel_for(int(masked.size()), 1, [&](int m) { sums[m] = integral(mask_of(masked[m])); });
   low_ = world.bounds.min();
   cell_ = world.bounds.sizes().maxCoeff() / cells;
   const Eigen::Vector3d n = (world.bounds.sizes() / cell_).array().ceil();
@@ -90,15 +90,17 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
   // Blocks of cells first: most of space is empty, most of the rest deep inside.
   constexpr int kBlock = 4;
   const double half_diagonal = 0.87;  // of a cell, half the square root of 3
-#pragma omp parallel for collapse(3) schedule(dynamic, 16)
-  for (int k0 = 0; k0 < nz_; k0 += kBlock)
-    for (int j0 = 0; j0 < ny_; j0 += kBlock)
-      for (int i0 = 0; i0 < nx_; i0 += kBlock) {
+  const auto blocks = [](int cells) { return (cells + kBlock - 1) / kBlock; };
+  const int across = blocks(nx_), rows = blocks(ny_);
+  parallel_for(
+      blocks(nz_) * rows * across, 16, [&](int b) {
+        const int i0 = b % across * kBlock, j0 = b / across % rows * kBlock,
+                  k0 = b / (across * rows) * kBlock;
         const Eigen::Vector3d middle =
             low_ + cell_ * (Eigen::Vector3d(i0, j0, k0) + Eigen::Vector3d::Constant(kBlock / 2.0));
         std::vector<int> cut;
         const Share block = in_all_masks(middle, kBlock * half_diagonal * cell_, all, &cut);
-        if (block == kNone) continue;
+        if (block == kNone) return;
         for (int k = k0; k < std::min(nz_, k0 + kBlock); ++k)
           for (int j = j0; j < std::min(ny_, j0 + kBlock); ++j)
             for (int i = i0; i < std::min(nx_, i0 + kBlock); ++i) {
@@ -106,7 +108,7 @@ VisualHull::VisualHull(const EdgeWorld& world, int cells) {
               occupied_[(size_t(k) * ny_ + j) * nx_ + i] =
                   block == kAll ? kAll : in_all_masks(p, half_diagonal * cell_, cut, nullptr);
             }
-      }
+      });
 }
 
 uint8_t VisualHull::at(const Eigen::Vector3d& p) const {

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -95,8 +97,7 @@ class Sweeper {
     }
     choose_neighbours();
     far_.resize(world.views.size());
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int v = 0; v < int(far_.size()); ++v) far_[v] = FarCells(world.maps[v]);
+    parallel_for(int(far_.size()), 1, [&](int v) { far_[v] = FarCells(world.maps[v]); });
   }
 
   // The best point on the ray of an edgel; false if too few views agree. Matches: after refinement.
@@ -329,9 +330,9 @@ std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& opt
     const std::vector<int> seeds = pick(world.maps[view], explained[view], options.stride_px);
     std::vector<EdgePoint> lifted(seeds.size());
     std::vector<std::vector<Match>> matches(seeds.size());
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int k = 0; k < int(seeds.size()); ++k)
+    parallel_for(int(seeds.size()), 4, [&](int k) {
       if (!sweeper.lift(view, seeds[k], &lifted[k], &matches[k])) matches[k].clear();
+    });
     for (size_t k = 0; k < seeds.size(); ++k) {
       if (matches[k].empty()) continue;
       if (world.object.contains(lifted[k].position)) points.push_back(lifted[k]);

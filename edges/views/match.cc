@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "datasets/types/median.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -133,8 +134,7 @@ void add_quadratics(const EdgeWorld& world, const CurvePoints& samples, Matches*
   const int n = int(samples.position.cols());
   out->information.assign(n, Eigen::Matrix3d::Zero());
   out->slope = Eigen::Matrix3Xd::Zero(3, n);
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < n; ++i) {
+  parallel_for(n, [&](int i) {
     for (int k = out->first[i]; k < out->first[i + 1]; ++k) {
       const SampleMatch& m = out->matches[k];
       const Eigen::Vector3d a = distance_gradient(world, m, samples.position.col(i));
@@ -143,7 +143,7 @@ void add_quadratics(const EdgeWorld& world, const CurvePoints& samples, Matches*
     }
     const Eigen::Vector3d t = samples.tangent.col(i);
     out->information[i] += kSlide * out->information[i].trace() * t * t.transpose();
-  }
+  });
 }
 
 }  // namespace
@@ -152,13 +152,12 @@ Matches match_samples(const EdgeWorld& world, const CurvePoints& samples,
                       const MatchOptions& options) {
   const int n = int(samples.position.cols()), views = int(world.views.size());
   std::vector<std::vector<SampleMatch>> by_view(views);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < views; ++v) {
+  parallel_for(views, 1, [&](int v) {
     by_view[v] = match_view(world, v, samples, options);
     drop_accidents(samples, options, &by_view[v]);
     if (options.exclusive)
       make_exclusive(samples, world.maps[v].edgels.size(), options.exclusive_between, &by_view[v]);
-  }
+  });
   Matches out;
   out.first.assign(n + 1, 0);
   for (const auto& list : by_view)

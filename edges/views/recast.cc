@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "datasets/types/parallel.h"
 #include "edges/image/undistort.h"
 
 namespace sketchsplat {
@@ -47,15 +48,14 @@ EdgelMap coarser(const EdgelMap& map, int factor) {
 
 EdgeWorld recast(EdgeWorld world, std::vector<View> views) {
   const int n = int(world.views.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < n; ++v) {
+  parallel_for(n, 1, [&](int v) {
     const View& from = world.views[v];
     EdgelMap& map = world.maps[v];
     const bool lens = !from.lens.is_identity() || !views[v].lens.is_identity();
     if (lens && !same_image(from, views[v]))
       map = undistort_edgels(distort_edgels(std::move(map), from), views[v], 1, kLookupPx);
     world.plane_normal[v] = plane_normals(views[v], map);
-  }
+  });
   world.views = std::move(views);
   return world;
 }
@@ -69,12 +69,11 @@ EdgeWorld coarser(const EdgeWorld& world, int factor) {
   out.hull = world.hull;
   out.maps.resize(n);
   out.plane_normal.resize(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < n; ++v) {
+  parallel_for(n, 1, [&](int v) {
     out.views[v].camera = world.views[v].camera.shrunk(factor);
     out.maps[v] = coarser(world.maps[v], factor);
     out.plane_normal[v] = plane_normals(out.views[v], out.maps[v]);
-  }
+  });
   return out;
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -252,16 +254,15 @@ bool Rim::is_round(double footprint) const {
 void explain_rim(const EdgeWorld& world, const CurvePoints& curve, const Rim& rim,
                  const ExplainOptions& options, EdgelFlags* explained) {
   const Frames frames(curve, int(curve.position.cols()));
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(world.views.size()); ++v) {
-    if (rim.side[v] == 0) continue;
+  parallel_for(int(world.views.size()), 1, [&](int v) {
+    if (rim.side[v] == 0) return;
     CurvePoints seen = curve;
     for (int k = 0; k < frames.size(); ++k) {
       const auto [n, row] = normal_of(frames, k, world.views[v].center_in_world(), rim.side[v]);
       seen.position.col(k) += n * row.dot(rim.axis);
     }
     explain_in_view(world, v, seen, options, &(*explained)[v]);
-  }
+  });
 }
 
 }  // namespace sketchsplat

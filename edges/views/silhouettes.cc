@@ -10,6 +10,7 @@
 
 #include "datasets/types/errors.h"
 #include "datasets/types/median.h"
+#include "datasets/types/parallel.h"
 #include "edges/image/cut_out.h"
 #include "edges/views/find_object.h"
 
@@ -154,8 +155,7 @@ Held held_by_most(const std::vector<View>& views, const std::vector<Cut>& cuts,
     const int x = i % n.x(), y = i / n.x() % n.y(), z = i / (n.x() * n.y());
     return Vector3d(region.box.min() + out.cell * Vector3d(x + 0.5, y + 0.5, z + 0.5));
   };
-#pragma omp parallel for schedule(dynamic, 256)
-  for (int i = 0; i < int(held.size()); ++i) {
+  parallel_for(int(held.size()), 256, [&](int i) {
     const Vector3d p = place(i);
     int asked = 0, no = 0;
     for (size_t v = 0; v < views.size(); ++v) {
@@ -170,7 +170,7 @@ Held held_by_most(const std::vector<View>& views, const std::vector<Cut>& cuts,
       no += cuts[v].distance(y, x) > kEndPx + 0.5 * cell_px;
     }
     held[size_t(i)] = asked >= kFewestViews && no <= most_outvoted * asked;
-  }
+  });
   for (int i = 0; i < int(held.size()); ++i)
     if (held[size_t(i)]) out.places.push_back(place(i));
   return out;
@@ -234,21 +234,6 @@ Image<uint8_t> at_full_size(const cv::Mat1b& mask, const Camera& camera, int den
   return out;
 }
 
-// In parallel; what one throws is thrown on.
-void for_each_view(int views, const std::function<void(int view)>& act) {
-  std::vector<std::exception_ptr> failures(views);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < views; ++v) {
-    try {
-      act(v);
-    } catch (...) {
-      failures[v] = std::current_exception();
-    }
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
-}
-
 }  // namespace
 
 Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion& edges,
@@ -259,7 +244,7 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
   const ObjectRegion region = wider(edges, kBeyond * edges.box.sizes().maxCoeff());
   const int n = int(views.size());
   std::vector<Cut> cuts(n);
-  for_each_view(n, [&](int v) {
+  parallel_for(n, 1, [&](int v) {
     cuts[v] = read_cut(views[v], region, options.object_px, [&](int d) { return read(v, d); });
     if (cuts[v].denominator > 0)
       cut_again(may_be({views[v], cuts[v].denominator}, region), kCoarseRounds, &cuts[v]);
@@ -267,7 +252,7 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
   Held held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
   // What others do not hold is no object, whatever its colours: without it these are told better.
-  for_each_view(n, [&](int v) {
+  parallel_for(n, 1, [&](int v) {
     const Shrunk shrunk{views[v], cuts[v].denominator};
     if (!cuts[v].mask.empty()) cut_again(grown(covered(shrunk, held), kAgainPx), kRounds, &cuts[v]);
   });
@@ -279,7 +264,7 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
   out.mask.resize(n);
   out.slack_px.assign(n, 0);
   std::vector<double> agreement(n, 0);
-  for_each_view(n, [&](int v) {
+  parallel_for(n, 1, [&](int v) {
     const Cut& cut = cuts[v];
     if (cut.mask.empty()) return;
     const Shrunk shrunk{views[v], cut.denominator};
@@ -343,12 +328,11 @@ Image<float> alpha_around(const Image<uint8_t>& mask, double px) {
 
 EdgeWorld with_silhouettes(EdgeWorld world, const Silhouettes& found) {
   if (found.mask.empty()) return world;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(world.views.size()); ++v) {
-    if (found.mask[v].empty()) continue;
+  parallel_for(int(world.views.size()), 1, [&](int v) {
+    if (found.mask[v].empty()) return;
     world.maps[v] = on_silhouette(world.maps[v], world.views[v], found.mask[v], found.slack_px[v]);
     world.plane_normal[v] = plane_normals(world.views[v], world.maps[v]);
-  }
+  });
   world.object = found.region;
   world.bounds = found.region.box;
   world.silhouettes = std::make_shared<const std::vector<Image<uint8_t>>>(found.mask);

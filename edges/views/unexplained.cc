@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -44,9 +46,8 @@ EdgelFlags no_edgels(const EdgeWorld& world) {
 
 void explain(const EdgeWorld& world, const CurvePoints& samples, const ExplainOptions& options,
              EdgelFlags* explained) {
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(world.views.size()); ++v)
-    explain_in_view(world, v, samples, options, &(*explained)[v]);
+  parallel_for(int(world.views.size()), 1,
+               [&](int v) { explain_in_view(world, v, samples, options, &(*explained)[v]); });
 }
 
 EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int min_chain) {
@@ -59,8 +60,7 @@ EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int m
   out.hull = world.hull;
   out.maps.resize(n);
   out.plane_normal.resize(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < n; ++v) {
+  parallel_for(n, 1, [&](int v) {
     const EdgelMap& map = world.maps[v];
     std::vector<char> keep = explained[v];
     for (char& k : keep) k = !k;
@@ -72,7 +72,7 @@ EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int m
     out.plane_normal[v].resize(3, kept.size());
     for (size_t k = 0; k < kept.size(); ++k)
       out.plane_normal[v].col(k) = world.plane_normal[v].col(kept[k]);
-  }
+  });
   return out;
 }
 

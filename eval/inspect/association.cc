@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "datasets/types/parallel.h"
 #include "eval/inspect/edge_samples.h"
 #include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
@@ -158,8 +159,7 @@ Association associate(const Sketch& measured, const Nominal& nominal,
   Association out;
   const int n = int(nominal.edges.size());
   out.edges.resize(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int e = 0; e < n; ++e) {
+  parallel_for(n, 1, [&](int e) {
     EdgeMatch& match = out.edges[e];
     match.places = std::move(places[e]);
     for (size_t i = 0; i < match.places.size(); ++i) {
@@ -167,7 +167,7 @@ Association associate(const Sketch& measured, const Nominal& nominal,
       find_measured(measured, claims.of_edge(e), reach, &match.places[i]);
     }
     judge(options, &match);
-  }
+  });
   for (int s = 0; s < measured.size(); ++s)
     if (claims.beside(s) < kOwn) out.extras.push_back({s, claims.length(s), claims.beside(s)});
   return out;

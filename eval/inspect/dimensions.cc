@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "datasets/types/parallel.h"
 #include "eval/inspect/neighbours.h"
 
 namespace sketchsplat {
@@ -325,9 +326,9 @@ std::vector<DimensionCheck> measure_dimensions(const std::vector<Dimension>& dim
       if (index.emplace(Key{ref.kind, ref.index}, refs.size()).second) refs.push_back(ref);
   std::vector<MeasuredFeature> features(refs.size());
   const int n = int(refs.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < n; ++i)
+  parallel_for(n, 1, [&](int i) {
     features[i] = measured_feature(nominal, association, measured, sigma, refs[i]);
+  });
   std::vector<DimensionCheck> out;
   for (const Dimension& d : dimensions) {
     std::vector<const MeasuredFeature*> used;

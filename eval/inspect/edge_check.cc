@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -90,9 +92,9 @@ DeviationPrior prior_of(const std::vector<MeasuredEdge>& edges, double tolerance
     for (const PieceLikelihood& p : e.pieces) pieces.push_back(&p);
   std::vector<std::vector<double>> evidence(pieces.size());
   const int n = int(pieces.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < n; ++i)
+  parallel_for(n, 1, [&](int i) {
     for (const double scale : vague.scales) evidence[i].push_back(pieces[i]->log_evidence(scale));
+  });
   return learn_prior(vague, evidence);
 }
 

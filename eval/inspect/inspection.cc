@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -131,14 +132,13 @@ void check_edges(const Nominal& nominal, double tolerance, bool learn, const Sig
                  Inspection* out) {
   const int n = int(nominal.edges.size());
   std::vector<MeasuredEdge> measured(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int e = 0; e < n; ++e)
+  parallel_for(n, 1, [&](int e) {
     measured[e] = measure_edge(out->association.edges[e], nominal.edges[e], out->measured,
                                out->alignment.holds[e], tolerance, sigma);
+  });
   out->prior = prior_of(measured, tolerance, learn);
   out->edges.resize(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int e = 0; e < n; ++e) out->edges[e] = judge_edge(measured[e], out->prior);
+  parallel_for(n, 1, [&](int e) { out->edges[e] = judge_edge(measured[e], out->prior); });
 }
 
 }  // namespace

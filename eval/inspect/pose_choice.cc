@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/types/parallel.h"
 #include "eval/inspect/pose_candidates.h"
 
 namespace sketchsplat {
@@ -34,16 +35,14 @@ class PoseChooser {
         pose_candidates(robust_.measured(), robust_.nominal().sketch, robust_.options().fit_scale);
     std::vector<Pose> poses(candidates.size());
     const int n = int(candidates.size());
-#pragma omp parallel for schedule(dynamic, 16)
-    for (int i = 0; i < n; ++i) poses[i] = {candidates[i], -score(candidates[i])};
+    parallel_for(n, 16, [&](int i) { poses[i] = {candidates[i], -score(candidates[i])}; });
     sort_by_cost(&poses);
     poses = distinct(poses, kTried);
     const int tried = int(poses.size());
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < tried; ++i) {
+    parallel_for(tried, 1, [&](int i) {
       poses[i].pose = roughly_fitted(poses[i].pose);
       poses[i].cost = cost(poses[i].pose, kWide[2] / 4 * robust_.nominal().extent);
-    }
+    });
     sort_by_cost(&poses);
     poses = distinct(poses, kFinal);
     return best_of(poses, out);
@@ -123,9 +122,9 @@ class PoseChooser {
 
   Pose best_of(std::vector<Pose> poses, Alignment* out) const {
     const int n = int(poses.size());
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < n; ++i)
+    parallel_for(n, 1, [&](int i) {
       poses[i].pose = robust_.fitted(poses[i].pose, every(kMiddle), robust_.basis());
+    });
     // What is far for the best is far for all.
     double scale = std::numeric_limits<double>::infinity();
     for (const Pose& p : poses) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
 #include "raster/splats/render.h"
 
 namespace sketchsplat {
@@ -106,9 +107,9 @@ std::vector<EdgeTarget> make_targets(const EdgeWorld& world, const OptimizeOptio
   std::vector<EdgeTarget> targets(world.views.size());
   LossOptions loss;
   loss.kind = LossKind::kSquared;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(targets.size()); ++v)
+  parallel_for(int(targets.size()), 1, [&](int v) {
     targets[v] = make_edge_target(draw_edge_map(world.maps[v], options.sigma_px), loss);
+  });
   return targets;
 }
 

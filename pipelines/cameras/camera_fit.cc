@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "datasets/types/median.h"
+#include "datasets/types/parallel.h"
 #include "pipelines/cameras/halves.h"
 #include "pipelines/cameras/point_prior.h"
 #include "sketches/curve/curve.h"
@@ -188,12 +189,11 @@ void System::weigh() {
 void System::place(const State& state) {
   now_ = state;
   cameras_.set(state.cameras);
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < layout_.size(); ++i) {
+  parallel_for(layout_.size(), [&](int i) {
     const int s = layout_.stroke[i];
     const ControlPoints& c = now_.strokes[s];
     evaluate_curve<double>(kinds_[s], c.p.data(), layout_.t[i], &points_[i], &tangents_[i]);
-  }
+  });
 }
 
 // Signed, along the normal of the stroke's image; NaN where there is none.
@@ -217,8 +217,7 @@ double System::distance(const Row& row, Linear* out, const PointJacobian* moves)
 
 std::vector<double> System::distances() const {
   std::vector<double> d(rows_.size());
-#pragma omp parallel for schedule(static)
-  for (size_t i = 0; i < rows_.size(); ++i) d[i] = distance(rows_[i], nullptr);
+  parallel_for(int(rows_.size()), [&](int i) { d[i] = distance(rows_[i], nullptr); });
   return d;
 }
 
@@ -232,8 +231,7 @@ double System::cost() const {
 
 void System::linearise(std::vector<Linear>* out) const {
   out->resize(rows_.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int s = 0; s < int(kinds_.size()); ++s) {
+  parallel_for(int(kinds_.size()), 1, [&](int s) {
     PointJacobian moves;
     int sample = -1;
     for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
@@ -241,21 +239,20 @@ void System::linearise(std::vector<Linear>* out) const {
         moves = point_jacobian(kinds_[s], now_.strokes[s], layout_.t[sample = rows_[i].sample]);
       distance(rows_[i], &(*out)[i], &moves);
     }
-  }
+  });
 }
 
 // Normal equations of the strokes, and what is left of those of the cameras without them.
 void System::assemble(const std::vector<Linear>& rows, double damping, int half) {
   const int n = int(kinds_.size()), size = cameras_.size();
   normals_.resize(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int s = 0; s < n; ++s) {
+  parallel_for(n, 1, [&](int s) {
     Normal& normal = normals_[s];
     StrokeMatrix A = StrokeMatrix::Zero();
     normal.gradient.setZero();
     normal.cross = MatrixXd::Zero(kStroke, size);
     normal.inverse.setZero();
-    if (half >= 0 && s % 2 != half) continue;
+    if (half >= 0 && s % 2 != half) return;
     for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
       const Linear& r = rows[i];
       const int camera = cameras_.camera_of(rows_[i].view), shared = cameras_.num_shared(camera);
@@ -267,14 +264,14 @@ void System::assemble(const std::vector<Linear>& rows, double damping, int half)
       normal.cross.middleCols(cameras_.shared_column(camera), shared).noalias() +=
           j * r.shared.head(shared).transpose();
     }
-    if (!(A.trace() > 0) || !A.allFinite()) continue;
+    if (!(A.trace() > 0) || !A.allFinite()) return;
     const Eigen::SelfAdjointEigenSolver<StrokeMatrix> es(A);
     const double largest = es.eigenvalues()[kStroke - 1];
     for (int k = 0; k < kStroke; ++k)
       if (es.eigenvalues()[k] > kRank * largest)
         normal.inverse += es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() /
                           (es.eigenvalues()[k] + damping * largest);
-  }
+  });
   hessian_ = prior_.information;
   gradient_ = prior_.gradient + prior_.information * now_.cameras;
   for (int v = 0; v < int(of_view_.size()); ++v) {

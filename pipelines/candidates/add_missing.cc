@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "datasets/types/parallel.h"
 #include "edges/contrast/alarm_threshold.h"
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
@@ -141,13 +142,12 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
     const double hasty = judge.judge(points, every, windows).nats;
     return hasty > kPromise ? judge.judge(points, 1, windows).nats : hasty;
   };
-#pragma omp parallel for schedule(dynamic, 4)
-  for (int i = 0; i < n; ++i) {
+  parallel_for(n, 4, [&](int i) {
     const std::vector<Window>& windows = windows_of(out.candidates[i]);
     out.nats[i] = nats(out.points[i], windows);
     const CurvePoints aside = moved_aside(out.points[i], i, px);
     if (known.share(aside) <= kKnownShare) out.nulls[i] = nats(aside, windows);
-  }
+  });
   out.nulls.erase(std::remove(out.nulls.begin(), out.nulls.end(), -INFINITY), out.nulls.end());
   return out;
 }

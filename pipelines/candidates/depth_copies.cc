@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "datasets/types/parallel.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -158,8 +159,7 @@ Depth best_depth(const CurvePoints& loop, const Vector3d& normal, double low, do
     return judge.judge(shifted(loop, d * normal), every, windows).nats;
   };
   std::vector<double> nats(depth.size());
-#pragma omp parallel for schedule(dynamic, 4)
-  for (int k = 0; k < int(depth.size()); ++k) nats[k] = nats_at(depth[k]);
+  parallel_for(int(depth.size()), 4, [&](int k) { nats[k] = nats_at(depth[k]); });
   const auto most = std::max_element(nats.begin(), nats.end());
   if (most == nats.end() || *most < kLeastNats) return {};
   const double coarse = depth[most - nats.begin()];

@@ -2,6 +2,7 @@
 #include "pipelines/detectors/detectors.h"
 
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 #include "edges/image/undistort.h"
 #include "pipelines/detectors/surfel_detector.h"
 
@@ -87,20 +88,14 @@ std::vector<Detection> detect_all(const Scene& scene, Detector* detector, RunRep
   detector->prepare(scene, report, progress);
   Stage stage("detect", n, report, progress);
   std::vector<Detection> found(n);
-  std::vector<std::exception_ptr> failures(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < n; ++i) {
+  parallel_for(n, 1, [&](int i) {
     try {
       found[i].map = detector->detect(scene, scene.views[i]);
     } catch (const InputError& e) {
       found[i].complaint = e.what();
-    } catch (...) {
-      failures[i] = std::current_exception();  // must not leave the parallel loop
     }
     stage.step();
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  });
   size_t edgels = 0;
   int read = 0;
   for (int i = 0; i < n; ++i) {

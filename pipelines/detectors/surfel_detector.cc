@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 #include "edges/image/undistort.h"
 #include "edges/surfels/model/training_view.h"
 #include "edges/surfels/start/edge_tracks.h"
@@ -143,18 +144,7 @@ class SurfelDetector : public Detector {
   // In parallel; f(index of the view).
   template <typename F>
   void for_each_view(const F& f) const {
-    const int n = int(world_.views.size());
-    std::vector<std::exception_ptr> failures(n);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < n; ++i) {
-      try {
-        f(i);
-      } catch (...) {
-        failures[i] = std::current_exception();  // must not leave the parallel loop
-      }
-    }
-    for (const std::exception_ptr& failure : failures)
-      if (failure) std::rethrow_exception(failure);
+    parallel_for(int(world_.views.size()), 1, f);
   }
 
   // What the edges of the pictures, printed ones too, say about where nothing is.
@@ -181,9 +171,7 @@ class SurfelDetector : public Detector {
     std::vector<EdgelMap> maps(n);
     std::vector<Image<float>> alpha(n);
     std::vector<std::string> complaints(n);
-    std::vector<std::exception_ptr> failures(n);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < n; ++i) {
+    parallel_for(n, 1, [&](int i) {
       try {
         Picture picture = read_masked(scene.views[i]);
         View view = scene.views[i];
@@ -195,12 +183,8 @@ class SurfelDetector : public Detector {
         alpha[i] = std::move(picture.alpha);
       } catch (const InputError& e) {
         complaints[i] = e.what();
-      } catch (...) {
-        failures[i] = std::current_exception();  // must not leave the parallel loop
       }
-    }
-    for (const std::exception_ptr& failure : failures)
-      if (failure) std::rethrow_exception(failure);
+    });
     std::vector<TrainingView> good;
     std::vector<View> good_views;
     std::vector<EdgelMap> good_maps;

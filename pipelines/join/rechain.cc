@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
 #include "pipelines/survey/observe.h"
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
@@ -253,9 +254,9 @@ Rechained rechain(const Sketch& sketch, const EdgeWorld& world, const SegmentOpt
       chains_of(sketch, partners(sketch, ends, options.gap_px * world.footprint,
                                  std::cos(options.turn_deg * M_PI / 180)));
   std::vector<std::vector<RunPiece>> pieces(chains.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (size_t c = 0; c < chains.size(); ++c)
+  parallel_for(int(chains.size()), 1, [&](int c) {
     pieces[c] = shorter(sketch, o, chains[c], sigma, world.footprint, segment);
+  });
   Rechained result;
   Rebuilder rebuild(sketch);
   for (int s = 0; s < sketch.size(); ++s)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "datasets/types/parallel.h"
 #include "edges/views/unexplained.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_jacobian.h"
@@ -136,8 +137,7 @@ Sketch FamilyFit::sketch(const Sibling& sibling) const {
 
 std::vector<SampleMatch> FamilyFit::far_matches(const CurvePoints& samples, double reach_px) const {
   std::vector<std::vector<SampleMatch>> by_view(views_.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (size_t k = 0; k < views_.size(); ++k) {
+  parallel_for(int(views_.size()), 1, [&](int k) {
     const View& view = world_.views[views_[k]];
     const std::vector<Edgel>& edgels = world_.maps[views_[k]].edgels;
     std::vector<std::pair<float, int>> owner(edgels.size() / kBlock + 1, {1e9f, -1});
@@ -169,7 +169,7 @@ std::vector<SampleMatch> FamilyFit::far_matches(const CurvePoints& samples, doub
     for (size_t m = 0; m < by_view[k].size(); ++m)
       if (owner[by_view[k][m].edgel / kBlock].second == curve_of[m]) kept.push_back(by_view[k][m]);
     by_view[k].swap(kept);
-  }
+  });
   std::vector<SampleMatch> out;
   for (const auto& list : by_view) out.insert(out.end(), list.begin(), list.end());
   return out;

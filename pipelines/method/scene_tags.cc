@@ -5,6 +5,7 @@
 
 #include "datasets/io/image_io.h"
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 
@@ -12,8 +13,7 @@ std::vector<TagSquare> measure_tags(const Scene& scene, RunReport* report, Progr
   const int n = int(scene.views.size());
   Stage stage("tags", n, report, progress);
   std::vector<std::vector<TagPatch>> found(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < n; ++v) {
+  parallel_for(n, 1, [&](int v) {
     try {
       const Picture picture = read_picture(scene.views[v].image_path);
       const Camera& camera = scene.views[v].camera;
@@ -23,7 +23,7 @@ std::vector<TagSquare> measure_tags(const Scene& scene, RunReport* report, Progr
       // Whoever looks for edges in it will say so.
     }
     stage.step();
-  }
+  });
   std::vector<TagPatch> patches;
   int with_tags = 0;
   for (std::vector<TagPatch>& here : found) {

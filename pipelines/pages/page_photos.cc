@@ -9,6 +9,7 @@
 #include "datasets/io/jpeg_codec.h"
 #include "datasets/readers/smaller_pictures.h"
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 #include "pipelines/pages/overlay.h"
 
 namespace sketchsplat {
@@ -121,15 +122,14 @@ std::vector<PagePhoto> PhotoAlbum::photos(const std::vector<View>& views) const 
   const std::vector<int> places = places_in(scene_, views);
   for (size_t v = 0; v < views.size(); ++v) known[places[v]] = &views[v];
   std::vector<PagePhoto> photos;
-#pragma omp parallel for schedule(dynamic)
-  for (int k = 0; k < int(chosen_.size()); ++k) {
+  parallel_for(int(chosen_.size()), 1, [&](int k) {
     const View& view = scene_.views[chosen_[k]];
-    if (!known[chosen_[k]] || copies_->slots[k].taken) continue;
+    if (!known[chosen_[k]] || copies_->slots[k].taken) return;
     try {
       copies_->keep(read_picture(view, denominator_of(view, copies_->slots[k].size)), k);
     } catch (const InputError&) {
     }
-  }
+  });
   for (size_t k = 0; k < chosen_.size(); ++k)
     if (known[chosen_[k]] && !copies_->slots[k].jpeg.empty())
       photos.push_back({*known[chosen_[k]], copies_->slots[k].jpeg});

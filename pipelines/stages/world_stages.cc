@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 #include "edges/views/find_object.h"
 #include "edges/views/focus.h"
 #include "edges/views/silhouettes.h"
@@ -84,10 +85,9 @@ namespace {
 void detect_on_silhouettes(const Scene& scene, const Detector& detector, const Silhouettes& found,
                            double most_sides, EdgeWorld* world) {
   constexpr double kAround = 6;  // [px] so that no edge of the object is one of the alpha's
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(world->views.size()); ++v) {
+  parallel_for(int(world->views.size()), 1, [&](int v) {
     const Image<uint8_t>& mask = found.mask[v];
-    if (mask.empty()) continue;
+    if (mask.empty()) return;
     View view = world->views[v];
     view.make_picture = [&] {
       Picture picture = read_picture(world->views[v]);
@@ -102,9 +102,9 @@ void detect_on_silhouettes(const Scene& scene, const Detector& detector, const S
         map = most_meaningful(map, most_sides * std::sqrt(double(map.width) * map.height));
       world->maps[v] = std::move(map);
     } catch (const InputError&) {
-      continue;  // it was read before: what was found then stays
+      return;  // it was read before: what was found then stays
     }
-  }
+  });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -56,8 +57,7 @@ std::vector<StrokeFeatures> stroke_features(const Sketch& sketch, const EdgeWorl
   const double extent = largest_extent(sketch);
   const std::vector<int> degree = node_degrees(sketch);
   std::vector<StrokeFeatures> out(sketch.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < sketch.size(); ++i) {
+  parallel_for(sketch.size(), 1, [&](int i) {
     const StrokeStats& s = observation.strokes[i];
     const Stroke& stroke = sketch.strokes[i];
     StrokeFeatures& f = out[i];
@@ -75,7 +75,7 @@ std::vector<StrokeFeatures> stroke_features(const Sketch& sketch, const EdgeWorl
         is_closed(stroke.kind) ? 1 : 0.5 * ((degree[stroke.begin] > 1) + (degree[stroke.end] > 1));
     f.sigma = extent > 0 ? 1000 * sketch.evidence[i].sigma / extent : 0;
     f.determined = double(sketch.evidence[i].determined) / freedom(stroke.kind);
-  }
+  });
   return out;
 }
 

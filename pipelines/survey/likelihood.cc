@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -63,8 +65,7 @@ StrokeJudge::StrokeJudge(const EdgeWorld& world, const Observation& every, doubl
   peak_ = 2 * reach_px / (sigma_ * std::sqrt(2 * M_PI));
   const int strokes = int(every.layout.first.size()) - 1, views = int(world.views.size());
   in_view_.assign(strokes, std::vector<InView>(views));
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int s = 0; s < strokes; ++s) {
+  parallel_for(strokes, 1, [&](int s) {
     const int first = every.layout.first[s], n = every.layout.first[s + 1] - first;
     for (int v = 0; v < views; ++v) {
       const View& view = world.views[v];
@@ -82,7 +83,7 @@ StrokeJudge::StrokeJudge(const EdgeWorld& world, const Observation& every, doubl
       }
       in.sure = asked > 0 ? double(sure) / asked : 0;
     }
-  }
+  });
 }
 
 double StrokeJudge::sharpness(float width_px) const {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "datasets/types/median.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -155,11 +156,10 @@ RoundJudge::RoundJudge(const EdgeWorld& world, const Observation& wide, const Ro
   if (model.least_radius > 0) model_.least_radius_px = model.least_radius / world.footprint;
   sigma_ = model.least_sigma_px;
   std::vector<Sightings> strokes(wide.layout.first.size() - 1);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int s = 0; s < int(strokes.size()); ++s) {
+  parallel_for(int(strokes.size()), 1, [&](int s) {
     strokes[s] = round_sightings(world, wide, s, nullptr);
     if (int(strokes[s].size()) < kManyViews) strokes[s].clear();
-  }
+  });
   std::vector<float> off;
   for (const Sightings& seen : strokes)
     for (const RoundSighting& v : seen) off.push_back(float(std::abs(v.place_px)));

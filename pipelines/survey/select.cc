@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/parallel.h"
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
 #include "pipelines/survey/observe.h"
@@ -70,12 +71,11 @@ std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& worl
   look.sigma_px = std::max(look.sigma_px, o.matches.sigma_px);
   std::vector<Rim> rims(n);
   std::vector<char> round(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < n; ++i) {
-    if (o.strokes[i].length_px < options.min_length_px) continue;
+  parallel_for(n, 1, [&](int i) {
+    if (o.strokes[i].length_px < options.min_length_px) return;
     rims[i] = fit_rim(world, points_of(o, i), look);
     round[i] = rims[i].is_round(world.footprint);
-  }
+  });
   ExplainOptions near;
   near.reach_px = 1;  // edges may run beside a rim
   for (int i = 0; i < n; ++i)
@@ -97,11 +97,11 @@ double odds_in_scene(const StrokeObservation& o, const StrokeJudge& judge, const
                      const std::vector<char>& rim, const SelectOptions& options) {
   const int n = int(o.strokes.size());
   std::vector<double> nats(n, NAN);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < n; ++i)
+  parallel_for(n, 1, [&](int i) {
     if (!rim[i] && o.strokes[i].length_px >= options.min_length_px &&
         judge.nats(i, nullptr) > options.least_nats)
       nats[i] = rounds.nats(i, nullptr);
+  });
   nats.erase(std::remove_if(nats.begin(), nats.end(), [](double x) { return std::isnan(x); }),
              nats.end());
   return odds_of_round(nats);

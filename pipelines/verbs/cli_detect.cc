@@ -11,6 +11,7 @@
 #include "datasets/readers/scene.h"
 #include "datasets/types/errors.h"
 #include "datasets/types/geometry_maps.h"
+#include "datasets/types/parallel.h"
 #include "edges/image/undistort.h"
 #include "eval/metrics/edge_maps.h"
 #include "eval/metrics/map_errors.h"
@@ -86,20 +87,12 @@ std::vector<ViewScore> write_maps(const Scene& scene, const Detector& detector,
                                   const DetectArguments& arguments) {
   const int n = int(found.size());
   std::vector<ViewScore> scores(n);
-  std::vector<std::exception_ptr> failures(n);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < n; ++i) {
-    if (!found[i].complaint.empty()) continue;
-    try {
-      write_map(scene.views[i], found[i].map, arguments);
-      if (arguments.score) scores[i].edges = score_view(scene, scene.views[i], found[i].map);
-      look_at_geometry(scene, detector, scene.views[i], arguments, &scores[i]);
-    } catch (...) {
-      failures[i] = std::current_exception();  // must not leave the parallel loop
-    }
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  parallel_for(n, 1, [&](int i) {
+    if (!found[i].complaint.empty()) return;
+    write_map(scene.views[i], found[i].map, arguments);
+    if (arguments.score) scores[i].edges = score_view(scene, scene.views[i], found[i].map);
+    look_at_geometry(scene, detector, scene.views[i], arguments, &scores[i]);
+  });
   return scores;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "datasets/types/parallel.h"
 #include "raster/splats/tiles.h"
 
 namespace sketchsplat {
@@ -68,13 +69,13 @@ Eigen::VectorXd render_loss_views(const Splats& splats, const Eigen::MatrixXf& v
   std::vector<SplatGradient> slots(gradient ? std::min(count, kGroup) : 0);
   for (int begin = 0; begin < count; begin += kGroup) {
     const int end = std::min(begin + kGroup, count);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = begin; i < end; ++i) {
-      SplatGradient* slot = gradient ? &slots[i - begin] : nullptr;
+    parallel_for(end - begin, 1, [&](int k) {
+      const int i = begin + k;
+      SplatGradient* slot = gradient ? &slots[k] : nullptr;
       losses[i] = visibility.size()
                       ? render_loss(splats, visibility.col(i), views[i], targets[i], options, slot)
                       : render_loss(splats, all_visible, views[i], targets[i], options, slot);
-    }
+    });
     for (int i = begin; gradient && i < end; ++i) add_to(slots[i - begin], gradient);
   }
   return losses;

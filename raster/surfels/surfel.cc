@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
 #include "raster/surfels/surfel_footprint.h"
 #include "raster/surfels/surfel_tiles.h"
 
@@ -150,11 +151,10 @@ const SurfelImages& SurfelRenderer::forward(const SurfelCloud& cloud, const View
   const SurfelLoop loop(s.options);
   const int tiles = int(s.bins.tiles.size());
   s.sums.resize(tiles);
-#pragma omp parallel for schedule(dynamic, 8) if (tiles >= kParallelTiles)
-  for (int t = 0; t < tiles; ++t) {
+  parallel_for(tiles, tiles >= kParallelTiles ? 8 : tiles, [&](int t) {
     composite_tile(loop, s.bins.tiles[t], s.bins.entries.data(), s.footprints.data(), &s.sums[t]);
     store_images(s.sums[t], s.bins.tiles[t], &s.images);
-  }
+  });
   return s.images;
 }
 
@@ -165,18 +165,16 @@ void SurfelRenderer::backward(const SurfelCloud& cloud, const View& view,
   const SurfelLoop loop(s.options);
   const int tiles = int(s.bins.tiles.size()), footprints = int(s.footprints.size());
   s.entries.resize(s.bins.entries.size());
-#pragma omp parallel for schedule(dynamic, 8) if (tiles >= kParallelTiles)
-  for (int t = 0; t < tiles; ++t) {
+  parallel_for(tiles, tiles >= kParallelTiles ? 8 : tiles, [&](int t) {
     const SurfelTile& tile = s.bins.tiles[t];
     composite_tile_backward(loop, tile, s.bins.entries.data(), s.footprints.data(), s.sums[t],
                             load_gradient(by_images, tile), &s.entries[tile.begin]);
-  }
+  });
   *gradient = SurfelGradient::zero(s.count);
-#pragma omp parallel for schedule(static) if (tiles >= kParallelTiles)
-  for (int f = 0; f < footprints; ++f) {
+  parallel_for(footprints, tiles >= kParallelTiles ? 256 : footprints, [&](int f) {
     project_surfel_backward(cloud, view, s.options, s.footprints[f], gather(s.bins, f, s.entries),
                             gradient);
-  }
+  });
 }
 
 SurfelInfluence SurfelRenderer::influence() const {

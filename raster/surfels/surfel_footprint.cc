@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
 #include "raster/splats/lanes.h"
 
 namespace sketchsplat {
@@ -180,11 +181,10 @@ std::vector<SurfelFootprint> project_surfels(const SurfelCloud& cloud, const Vie
   std::vector<SurfelFootprint> all(count);
   std::vector<double> depths(count);
   std::vector<char> drawn(count);
-#pragma omp parallel for schedule(static) if (count >= 500)
-  for (int i = 0; i < count; ++i) {
+  parallel_for(count, 256, [&](int i) {
     drawn[i] = project(cloud, i, view, options, profile, &all[i]);
     depths[i] = view.cam_from_world.rotation.row(2).dot(cloud.center.col(i));
-  }
+  });
   std::vector<int> order;
   order.reserve(count);
   for (int i = 0; i < count; ++i) {

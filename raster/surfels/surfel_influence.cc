@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
 #include "raster/surfels/surfel.h"
 
 namespace sketchsplat {
@@ -35,14 +36,13 @@ Eigen::VectorXd influence_cosines(const std::vector<SurfelInfluence>& views,
   }
   Eigen::VectorXd cosines = Eigen::VectorXd::Zero(pairs.size());
   if (count == 0) return cosines;
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < int(pairs.size()); ++k) {
+  parallel_for(int(pairs.size()), [&](int k) {
     const auto [i, j] = pairs[k];
     double sum = 0;
     for (const SurfelInfluence& view : views) sum += product(view, i, j);
     const double norms = std::sqrt(norm2[i] * norm2[j]);
     if (norms > 0) cosines[k] = std::min(sum / norms, 1.0);
-  }
+  });
   return cosines;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "datasets/types/parallel.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -142,8 +143,7 @@ std::vector<StrokeCovariance> stroke_covariances(const Sketch& sketch, const Sam
   std::vector<size_t> begin(sketch.size() + 1, sightings.size());
   for (size_t m = sightings.size(); m-- > 0;) begin[layout.stroke[sightings[m].sample]] = m;
   for (int s = sketch.size(); s-- > 0;) begin[s] = std::min(begin[s], begin[s + 1]);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int s = 0; s < sketch.size(); ++s) {
+  parallel_for(sketch.size(), 1, [&](int s) {
     Normal& n = normals[s];
     const ControlPoints c = control_points(sketch, s);
     Matrix3x12 J = Matrix3x12::Zero();
@@ -166,7 +166,7 @@ std::vector<StrokeCovariance> stroke_covariances(const Sketch& sketch, const Sam
     }
     for (auto& [view, v] : n.views) v.close_edgel(&n.by_edgel);
     if (n.A.trace() > 0 && n.A.allFinite()) invert(&n);
-  }
+  });
   Scatter all;
   double parameters = 0;
   for (const Normal& n : normals) {

@@ -9,6 +9,7 @@
 
 #include "datasets/synthetic/scene/synthesize.h"
 #include "datasets/types/geometry_maps.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat::test {
 
@@ -21,8 +22,7 @@ inline GeometryMaps exact_maps(const SyntheticScene& scene, int k) {
   maps.normal.fill(Image<float>(w, h));
   const Eigen::Matrix3d R = view.cam_from_world.rotation;
   const Eigen::Vector3f eye = view.center_in_world().cast<float>();
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int y = 0; y < h; ++y)
+  parallel_for(h, 8, [&](int y) {
     for (int x = 0; x < w; ++x) {
       const Eigen::Vector3d ray = R.transpose() * view.camera.ray({double(x), double(y)});
       const Hit hit = scene.tracer.cast(eye, ray.cast<float>());
@@ -32,6 +32,7 @@ inline GeometryMaps exact_maps(const SyntheticScene& scene, int k) {
       maps.alpha.at(x, y) = 1;
       for (int c = 0; c < 3; ++c) maps.normal[c].at(x, y) = float(n[c]);
     }
+  });
   return maps;
 }
 

@@ -9,6 +9,7 @@
 
 #include "datasets/synthetic/render/noise.h"
 #include "datasets/synthetic/render/pixel_filter.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -359,11 +360,10 @@ Picture paint_photo(const PhotoWorld& world, const PhotoShader& shader,
   const Image<float> zero(w, h, 0.0f);
   Picture out{zero, zero, zero, zero};
   const int columns = (w + kTile - 1) / kTile, rows = (h + kTile - 1) / kTile;
-#pragma omp parallel for schedule(dynamic)
-  for (int i = 0; i < columns * rows; ++i) {
+  parallel_for(columns * rows, 1, [&](int i) {
     const int x = i % columns * kTile, y = i / columns * kTile;
     Tile(frame, {x, y, std::min(x + kTile, w), std::min(y + kTile, h)}).paint(&out);
-  }
+  });
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include "datasets/synthetic/render/visibility.h"
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -45,13 +46,12 @@ std::vector<int> count_views(CadPart* part, const std::vector<View>& views,
   for (const View& view : views) unit_views.push_back(in_unit_frame(view, part->frame));
   std::vector<int> counts(strokes.size());
   const int n = int(strokes.size());
-#pragma omp parallel for schedule(dynamic, 64)
-  for (int i = 0; i < n; ++i) {
+  parallel_for(n, 64, [&](int i) {
     const TruthCurve& curve = part->edges.curves[part->edges.curve_of_stroke[strokes[i]]];
     const Eigen::Vector3d outward = outward_near(curve, points.col(i));
     for (const View& view : unit_views)
       counts[i] += sees(view, *part->tracer, part->frame * points.col(i), outward, kLift);
-  }
+  });
   return counts;
 }
 

@@ -7,6 +7,7 @@
 
 #include "datasets/io/float_image_io.h"
 #include "datasets/synthetic/render/noise.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -29,8 +30,7 @@ void blur(double sigma, Image<float>* image) {
   for (float& k : kernel) k /= sum;
   for (const bool along_x : {true, false}) {
     const Image<float> in = *image;
-#pragma omp parallel for
-    for (int y = 0; y < in.height; ++y)
+    parallel_for(in.height, [&](int y) {
       for (int x = 0; x < in.width; ++x) {
         float value = 0;
         for (int i = -radius; i <= radius; ++i)
@@ -38,6 +38,7 @@ void blur(double sigma, Image<float>* image) {
                                                  : in.at(x, std::clamp(y + i, 0, in.height - 1)));
         image->at(x, y) = value;
       }
+    });
   }
 }
 
@@ -100,8 +101,7 @@ void expose_photo(const RenderOptions& options, std::uint64_t seed, int index, P
   for (int c = 0; c < 3; ++c) {
     Image<float>& plane = *planes[c];
     if (options.blur > 0) blur(options.blur, &plane);
-#pragma omp parallel for
-    for (int y = 0; y < plane.height; ++y)
+    parallel_for(plane.height, [&](int y) {
       for (int x = 0; x < plane.width; ++x) {
         double value = to_srgb(gain * plane.at(x, y));
         if (options.noise > 0)
@@ -109,6 +109,7 @@ void expose_photo(const RenderOptions& options, std::uint64_t seed, int index, P
                    normal(hash(seed, index, std::uint64_t(y) << 20 | std::uint64_t(x), 4 + c));
         plane.at(x, y) = float(std::clamp(value, 0.0, 1.0));
       }
+    });
   }
 }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cctype>
 
-#include "datasets/types/errors.h"
 #include "datasets/synthetic/cad/mesh_part.h"
 #include "datasets/synthetic/cad/parts.h"
 #include "datasets/synthetic/photo/photo_painter.h"
 #include "datasets/synthetic/render/visibility.h"
 #include "datasets/synthetic/scene/photo_world.h"
 #include "datasets/tags/april_tag.h"
+#include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -126,8 +127,7 @@ SyntheticScene synthesize(const SynthesizeOptions& given) {
   }
   const Tracer& all = photo ? photo->tracer : tracer;
   const int n = int(curves.size());
-#pragma omp parallel for schedule(dynamic)
-  for (int i = 0; i < n; ++i) count_views(all, unit_views, lift, &curves[i]);
+  parallel_for(n, 1, [&](int i) { count_views(all, unit_views, lift, &curves[i]); });
   const Vector3d shift = Vector3d::Constant(0.5 * options.extent);
   return {options,
           transformed(truth, options.extent, shift),

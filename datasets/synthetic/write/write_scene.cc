@@ -12,6 +12,7 @@
 #include "datasets/synthetic/write/write_photos.h"
 #include "datasets/synthetic/write/write_truth.h"
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -89,20 +90,12 @@ void write_scene(const SyntheticScene& scene, const std::string& folder) {
   make_folders(folder, outputs);
   const int n = int(scene.views.size());
   const std::vector<Fate> fate = fates(n, scene.options.degrade, scene.options.seed);
-  std::vector<std::exception_ptr> failures(n);
-#pragma omp parallel for schedule(dynamic)
-  for (int k = 0; k < n; ++k) {
-    try {
-      const RenderedView view = render_view(scene, k);
-      write_image(folder + "/color/" + scene.views[k].name, fate[k],
-                  [&](const std::string& path) { write_png(path, view.picture); });
-      write_outputs(scene, k, view, folder, outputs);
-    } catch (...) {
-      failures[k] = std::current_exception();
-    }
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  parallel_for(n, 1, [&](int k) {
+    const RenderedView view = render_view(scene, k);
+    write_image(folder + "/color/" + scene.views[k].name, fate[k],
+                [&](const std::string& path) { write_png(path, view.picture); });
+    write_outputs(scene, k, view, folder, outputs);
+  });
   write_truth(scene, folder);
   write_text(folder + "/meta_data.json", meta_data(scene).dump(1));
 }

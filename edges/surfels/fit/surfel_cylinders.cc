@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "datasets/neighbours/kd_tree.h"
+#include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
@@ -93,8 +94,7 @@ class CylinderPool {
  private:
   void find_neighbours(double radius) {
     const KdTree tree(points_.transpose());
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < int(from_.size()); ++i) near_[i] = tree.within(points_.row(i), radius);
+    parallel_for(int(from_.size()), [&](int i) { near_[i] = tree.within(points_.row(i), radius); });
   }
 
   void propose(int seed) {
@@ -113,8 +113,7 @@ class CylinderPool {
       }
     }
     std::vector<int> count(proposed_.size());
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(proposed_.size()); ++k) count[k] = count_on(proposed_[k]);
+    parallel_for(int(proposed_.size()), [&](int k) { count[k] = count_on(proposed_[k]); });
     for (size_t k = 0; k < proposed_.size(); ++k) queue_.push({count[k], int(k)});
   }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "datasets/types/median.h"
+#include "datasets/types/parallel.h"
 #include "edges/surfels/model/surfel_smooth.h"
 #include "edges/surfels/model/surfel_target.h"
 
@@ -132,8 +133,7 @@ class Trainer {
     const int n = field_.surfels.size();
     const SurfelCloud cloud = field_.surfels.cloud(Eigen::Matrix3Xd::Zero(3, n));
     std::vector<Eigen::Matrix4Xd> sums(targets_.size());
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int v = 0; v < int(targets_.size()); ++v) {
+    parallel_for(int(targets_.size()), 1, [&](int v) {
       SurfelRenderer renderer(field_.drawing);
       const SurfelTarget& t = targets_[v];
       std::vector<int> facing;
@@ -148,7 +148,7 @@ class Trainer {
           for (int c = 0; c < 3; ++c) sums[v](c, i) += w * t.view.color[c].data[p];
           sums[v](3, i) += w * t.view.alpha.data[p];
         }
-    }
+    });
     Eigen::Matrix4Xd sum = Eigen::Matrix4Xd::Zero(4, n);
     for (const Eigen::Matrix4Xd& s : sums) sum += s;
     const Eigen::VectorXd weight = sum.row(3);
@@ -222,8 +222,7 @@ class Trainer {
   BatchSum render_batch(const SurfelCloud& cloud) {
     const int batch = std::min<int>(options_.batch, targets_.size());
     std::vector<BatchSum> each(batch);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int b = 0; b < batch; ++b) {
+    parallel_for(batch, 1, [&](int b) {
       SurfelRenderer renderer(field_.drawing);
       const SurfelTarget& t = targets_[view_of(rendered_ + b)];
       std::vector<int> facing;
@@ -234,7 +233,7 @@ class Trainer {
       each[b].loss = surfel_loss(images, t.view, t.mask, t.footprint, loss_, &by_images);
       renderer.backward(seen, t.view.view, by_images, &gradient);
       each[b].gradient = spread_gradient(gradient, facing, cloud.size());
-    }
+    });
     rendered_ += batch;
     for (int b = 1; b < batch; ++b) {  // in the order of the views, whoever drew them
       SurfelGradient &to = each[0].gradient, &from = each[b].gradient;
@@ -358,14 +357,13 @@ class Trainer {
     if (pairs.empty()) return;
     const SurfelCloud cloud = field_.cloud();
     std::vector<SurfelInfluence> influences(std::min<size_t>(12, targets_.size()));
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int k = 0; k < int(influences.size()); ++k) {
+    parallel_for(int(influences.size()), 1, [&](int k) {
       SurfelRenderer renderer(field_.drawing);
       const SurfelTarget& t = targets_[view_of(k)];
       std::vector<int> facing;
       renderer.forward(facing_surfels(cloud, t.view.view, &facing), t.view.view, t.mask);
       influences[k] = spread_influence(renderer.influence(), facing, cloud.size());
-    }
+    });
     apply(merge_pairs(field_.surfels, pairs, influence_cosines(influences, pairs), kMergeCosine));
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/parallel.h"
 #include "edges/surfels/fit/surfel_field.h"
 
 namespace sketchsplat {
@@ -81,8 +82,7 @@ GeometryMaps render_geometry(const SurfelField& field, const View& view, double 
   }
   const Makers makers = makers_of(renderer.influence(), w * h);
   const double least = std::cos(mode_deg * M_PI / 180);
-#pragma omp parallel for schedule(dynamic, 16)
-  for (int y = 0; y < h; ++y) {
+  parallel_for(h, 16, [&](int y) {
     std::vector<Hit> hits;
     for (int x = 0; x < w; ++x) {
       const int p = y * w + x;
@@ -104,7 +104,7 @@ GeometryMaps render_geometry(const SurfelField& field, const View& view, double 
       const Eigen::Vector3f unit = top.normal.normalized();
       for (int c = 0; c < 3; ++c) maps.normal[c].data[p] = unit[c];
     }
-  }
+  });
   return maps;
 }
 

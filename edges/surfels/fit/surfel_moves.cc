@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "datasets/types/parallel.h"
 #include "edges/surfels/model/surfel_shading.h"
 
 namespace sketchsplat {
@@ -177,8 +178,7 @@ std::vector<int> homes_of(const std::vector<SurfelTarget>& targets, const Surfel
                           const SurfelSet& set) {
   const SurfelCloud cloud = set.cloud(Eigen::Matrix3Xd::Zero(3, set.size()));
   std::vector<std::vector<float>> shown(targets.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(targets.size()); ++v) {
+  parallel_for(int(targets.size()), 1, [&](int v) {
     SurfelRenderer renderer(drawing);
     const View& view = targets[v].view.view;
     std::vector<int> facing;
@@ -188,7 +188,7 @@ std::vector<int> homes_of(const std::vector<SurfelTarget>& targets, const Surfel
     for (size_t f = 0; f < facing.size(); ++f)
       for (int k = influence.first[f]; k < influence.first[f + 1]; ++k)
         shown[v][facing[f]] += influence.weight[k];
-  }
+  });
   std::vector<int> home(set.size(), -1);
   for (int i = 0; i < set.size(); ++i) {
     float most = kShown;
@@ -251,14 +251,13 @@ std::vector<int> move_surfels(const std::vector<SurfelTarget>& targets,
     }
     std::vector<Plane> plane(n);
     std::vector<char> now(n, 0);
-#pragma omp parallel for schedule(dynamic, 16)
-    for (int i = 0; i < n; ++i) {
-      if (home[i] < 0 || near[i].empty()) continue;
+    parallel_for(n, 16, [&](int i) {
+      if (home[i] < 0 || near[i].empty()) return;
       std::vector<Plane> others;
       for (const int j : near[i]) others.push_back(plane_of(*set, j));
       now[i] = best_plane(judge, home[i], plane_of(*set, i), others, targets[home[i]].footprint,
                           options, &plane[i]);
-    }
+    });
     for (int i = 0; i < n; ++i) {
       if (!now[i]) continue;
       moved[i] = 1;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/parallel.h"
 #include "edges/surfels/model/surfel_shading.h"
 
 namespace sketchsplat {
@@ -229,8 +230,7 @@ std::vector<std::pair<int, int>> neighbour_pairs(const SurfelSet& set, int count
   const double least = std::cos(max_angle_deg * M_PI / 180);
   const Bins bins(p, reach);
   std::vector<std::vector<std::pair<double, int>>> near(n);
-#pragma omp parallel for schedule(dynamic, 64)
-  for (int i = 0; i < n; ++i) {
+  parallel_for(n, 64, [&](int i) {
     bins.for_each_near(p.col(i), [&](int j) {
       const double d2 = (p.col(j) - p.col(i)).squaredNorm();
       if (j != i && d2 <= reach * reach && normal.col(i).dot(normal.col(j)) > least)
@@ -239,7 +239,7 @@ std::vector<std::pair<int, int>> neighbour_pairs(const SurfelSet& set, int count
     const auto last = near[i].begin() + std::min<size_t>(count, near[i].size());
     std::partial_sort(near[i].begin(), last, near[i].end());
     near[i].erase(last, near[i].end());
-  }
+  });
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < n; ++i)
     for (const auto& [d2, j] : near[i]) pairs.push_back(std::minmax(i, j));

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -43,8 +45,8 @@ SurfelTarget make_target(const TrainingView& full, int side, const Eigen::Vector
 std::vector<SurfelTarget> make_targets(const std::vector<TrainingView>& views, int side,
                                        const Eigen::Vector3d& middle) {
   std::vector<SurfelTarget> targets(views.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(views.size()); ++v) targets[v] = make_target(views[v], side, middle);
+  parallel_for(int(views.size()), 1,
+               [&](int v) { targets[v] = make_target(views[v], side, middle); });
   return targets;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -49,11 +51,10 @@ class EdgePlanes {
     std::vector<std::pair<int, double>> pairs(options_.tries);
     for (auto& p : pairs) p = {int(random() % n_), (random() % 65536) / 65536.0};
     std::vector<Candidate> out(pairs.size());
-#pragma omp parallel for schedule(dynamic, 16)
-    for (int k = 0; k < int(pairs.size()); ++k) {
+    parallel_for(int(pairs.size()), 16, [&](int k) {
       const auto [i, share] = pairs[k];
       if (through(i, partner(i, share), &out[k].plane)) out[k].points = near(out[k].plane);
-    }
+    });
     out.erase(std::remove_if(out.begin(), out.end(),
                              [&](const Candidate& c) { return int(c.points.size()) < fewest_; }),
               out.end());

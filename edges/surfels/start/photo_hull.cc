@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "datasets/types/parallel.h"
 #include "edges/surfels/start/edge_planes.h"
 #include "edges/surfels/start/plane_carving.h"
 
@@ -82,8 +83,7 @@ CellGrid visual_hull(const std::vector<Witness>& witnesses, const Eigen::Aligned
   g.nx = int(n.x()), g.ny = int(n.y()), g.nz = int(n.z());
   g.field.assign(g.size(), 0);
   constexpr float kFar = 3;  // cells
-#pragma omp parallel for schedule(dynamic, 256)
-  for (int c = 0; c < g.size(); ++c) {
+  parallel_for(g.size(), 256, [&](int c) {
     float f = kFar;
     for (const Witness& w : witnesses) {
       int x, y;
@@ -93,7 +93,7 @@ CellGrid visual_hull(const std::vector<Witness>& witnesses, const Eigen::Aligned
       if (f <= -kFar) break;
     }
     g.field[c] = std::max(f, -kFar);
-  }
+  });
   // What no view looks at is not known to be there.
   for (int c = 0; c < g.size(); ++c) {
     const int i = c % g.nx, j = c / g.nx % g.ny, k = c / (g.nx * g.ny);
@@ -143,8 +143,7 @@ std::vector<int> surface_of(const CellGrid& g) {
 
 void draw_depths(const CellGrid& g, const std::vector<int>& surface,
                  std::vector<Witness>* witnesses) {
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int w = 0; w < int(witnesses->size()); ++w) draw_depth(g, surface, &(*witnesses)[w]);
+  parallel_for(int(witnesses->size()), 1, [&](int w) { draw_depth(g, surface, &(*witnesses)[w]); });
 }
 
 int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, CellGrid* g) {
@@ -153,9 +152,9 @@ int carve(const PhotoHullOptions& options, std::vector<Witness>* witnesses, Cell
     const std::vector<int> surface = surface_of(*g);
     draw_depths(*g, surface, witnesses);
     std::vector<char> gone(surface.size(), 0);
-#pragma omp parallel for schedule(dynamic, 64)
-    for (int s = 0; s < int(surface.size()); ++s)
+    parallel_for(int(surface.size()), 64, [&](int s) {
       gone[s] = !consistent(g->center(surface[s]), *witnesses, g->cell, options);
+    });
     int count = 0;
     for (size_t s = 0; s < surface.size(); ++s)
       if (gone[s]) g->field[surface[s]] = -1, ++count;
@@ -286,9 +285,8 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
   if (views.empty() || bounds.isEmpty() || !(bounds.sizes().maxCoeff() > 0)) return samples;
   const double cell = bounds.sizes().maxCoeff() / options.cells;
   std::vector<Witness> witnesses(views.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int v = 0; v < int(views.size()); ++v)
-    witnesses[v] = make_witness(views[v], cell, bounds.center());
+  parallel_for(int(views.size()), 1,
+               [&](int v) { witnesses[v] = make_witness(views[v], cell, bounds.center()); });
   CellGrid grid = visual_hull(witnesses, bounds, options.cells);
   carve_sights(sure, options, &witnesses, &grid, &samples);
   const CellGrid pierced = grid;

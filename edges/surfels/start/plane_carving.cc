@@ -8,6 +8,8 @@
 #include <cmath>
 #include <map>
 
+#include "datasets/types/parallel.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -50,9 +52,9 @@ PlaneCarving::Sides PlaneCarving::sides(const Eigen::Vector3d& p) const {
 void PlaneCarving::divide() {
   const int n = hull_.size();
   sides_.assign(n, 0), region_.assign(n, -1);
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < n; ++c)
+  parallel_for(n, [&](int c) {
     if (hull_.field[c] > 0) sides_[c] = sides(hull_.center(c));
+  });
   std::map<Sides, int> number;
   for (int c = 0; c < n; ++c)
     if (hull_.field[c] > 0)
@@ -62,14 +64,14 @@ void PlaneCarving::divide() {
 
 void PlaneCarving::cross(const std::vector<SightLine>& lines) {
   crossed_.assign(hull_.size(), 0);
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < int(lines.size()); ++k)
+  parallel_for(int(lines.size()), [&](int k) {
     walk(lines[k], kLast, hull_, [&](int c, const Eigen::Vector3d& x) {
       // Of a cell that a plane cuts, the other part says nothing about this region.
       if (sides(hull_.low + hull_.cell * x) != sides_[c]) return;
 #pragma omp atomic write
       crossed_[c] = 1;
     });
+  });
 }
 
 std::vector<char> PlaneCarving::empty_regions(double share) const {
@@ -133,19 +135,17 @@ int PlaneCarving::carve(double share, CellGrid* grid) const {
   if (std::count(empty.begin(), empty.end(), 1) == 0) return 0;
   std::vector<char> gone(hull_.size(), 0);
   for (int c = 0; c < hull_.size(); ++c) gone[c] = region_[c] >= 0 && empty[region_[c]];
-#pragma omp parallel for schedule(dynamic, 1024)
-  for (int c = 0; c < hull_.size(); ++c) {
-    if (region_[c] < 0) continue;
+  parallel_for(hull_.size(), 1024, [&](int c) {
+    if (region_[c] < 0) return;
     const float d = std::max(kLeast, float(distance(c, gone)));
     grid->field[c] = gone[c] ? -d : std::min(hull_.field[c], d);
-  }
+  });
   return int(std::count(gone.begin(), gone.end(), 1));
 }
 
 int carve_crossed(const std::vector<SightLine>& lines, double least, CellGrid* grid) {
   std::vector<int> count(grid->size(), 0);
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < int(lines.size()); ++k) {
+  parallel_for(int(lines.size()), [&](int k) {
     int before = -1;
     walk(lines[k], kLastBlurred, *grid, [&](int c, const Eigen::Vector3d&) {
       if (c == before) return;
@@ -153,7 +153,7 @@ int carve_crossed(const std::vector<SightLine>& lines, double least, CellGrid* g
 #pragma omp atomic
       ++count[c];
     });
-  }
+  });
   // Lines are thin: those of a neighbourhood count together.
   for (const int s : {1, grid->nx, grid->nx * grid->ny}) {
     const std::vector<int> single = count;
