@@ -148,7 +148,7 @@ void Progress::clear_bar() {
 }
 
 void Progress::say(const std::string& line, bool warning) {
-  const std::string text = line.substr(0, line.find_last_not_of(' ') + 1);
+  const std::string text = one_line(line.substr(0, line.find_last_not_of(' ') + 1));
   said_since_ |= !warning && !warnings_.empty();
   log((warning ? "warning: " : "") + text);
   if (mode_ == Mode::kSilent) return;
