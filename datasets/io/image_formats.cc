@@ -50,9 +50,13 @@ bool is_believable(const OIIO::ImageSpec& spec, const char* path, std::string* f
   const std::uint64_t bytes = OIIO::Filesystem::file_size(path);
   const bool too_many = spec.width > 0 && spec.height > kMostPixels / spec.width;
   const bool too_deep = spec.nchannels < 1 || spec.nchannels > 64;
-  if (!too_many && !too_deep && spec.image_bytes() / 20000 <= bytes) return true;
+  // OpenImageIO takes memory for a whole strip of a TIFF, which may claim more rows than the image.
+  const std::uint64_t rows = std::max(spec.height, spec.get_int_attribute("tiff:RowsPerStrip"));
+  const bool too_tall = !too_many && rows > kMostPixels / std::uint64_t(std::max(1, spec.width));
+  if (!too_many && !too_deep && !too_tall && spec.image_bytes() / 20000 <= bytes) return true;
   *found = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels of " +
-           std::to_string(spec.nchannels) + " numbers in " + std::to_string(bytes) + " bytes";
+           std::to_string(spec.nchannels) + " numbers in " + std::to_string(bytes) + " bytes" +
+           (too_tall ? ", in strips of " + std::to_string(rows) + " rows" : "");
   return false;
 }
 

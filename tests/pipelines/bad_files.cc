@@ -46,6 +46,9 @@ std::vector<BadScene> bad_images() {
             "0.jpg: expected an image of at most 1200 MB, found 10000 MB"),
       image("TiffClaimsABillionPixels", both(as_tiff, put("color/0.tif", tiff(32000, 32000))), 0,
             "0.tif: expected an image, found "),
+      image("TiffClaimsTallStrips",
+            both(as_tiff, put("color/0.tif", tiff(32, 24, 2'000'000'000))), 0,
+            "0.tif: expected .*, in strips of 2000000000 rows"),
       image("TiffCutOff", both(as_tiff, put("color/0.tif", tiff(32, 24).substr(0, 60))), 0,
             "0.tif: expected an image, found "),
       mask(

@@ -121,14 +121,15 @@ inline Damage jpeg_claims(const std::string& file, std::uint16_t size) {
   };
 }
 /// A TIFF of one strip that claims this size.
-inline std::string tiff(std::uint32_t width, std::uint32_t height) {
+// With `rows` in a strip, packed; libtiff corrects what unpacked ones claim.
+inline std::string tiff(std::uint32_t width, std::uint32_t height, std::uint32_t rows = 0) {
   const auto entry = [](std::uint16_t tag, std::uint32_t value) {
     return bytes(tag) + bytes(std::uint16_t(4)) + bytes(std::uint32_t(1)) + bytes(value);
   };
   return std::string("II*\0\x08\0\0\0", 8) + bytes(std::uint16_t(9)) + entry(256, width) +
-         entry(257, height) + entry(258, 8) + entry(259, 1) + entry(262, 1) + entry(273, 200) +
-         entry(277, 1) + entry(278, height) + entry(279, 64) + bytes(std::uint32_t(0)) +
-         std::string(200, '\0');
+         entry(257, height) + entry(258, 8) + entry(259, rows > 0 ? 32773 : 1) + entry(262, 1) +
+         entry(273, 200) + entry(277, 1) + entry(278, rows > 0 ? rows : height) + entry(279, 64) +
+         bytes(std::uint32_t(0)) + std::string(200, '\0');
 }
 /// Depth and normals of all views as OpenEXR, then damage.
 inline Damage maps(const Damage& then) {
