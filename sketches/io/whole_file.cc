@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/io/whole_file.h"
 
+#include <algorithm>
+
 #include "datasets/types/errors.h"
 
 namespace sketchsplat {
 namespace {
 
 constexpr std::int64_t kMega = 1'000'000;
-constexpr std::int64_t kBlock = 1 << 20;  // [bytes] read at a time
+constexpr std::int64_t kLeastBlock = 1 << 14, kMostBlock = 1 << 20;  // [bytes] read at a time
 
 [[noreturn]] void refuse(const std::string& path, std::int64_t most, const std::string& found) {
   throw InputError(path, "a file of at most " + std::to_string(most / kMega) + " MB", found);
@@ -29,12 +31,12 @@ void check_length(std::istream* in, const std::string& path, std::int64_t most) 
 std::string read_whole(std::istream* in, const std::string& path, std::int64_t most) {
   check_length(in, path, most);
   std::string text;
-  for (std::streamsize got = kBlock; got == kBlock;) {
+  // Most files are small, and memory has to be cleared before it is read into.
+  for (std::int64_t block = kLeastBlock; *in; block = std::min(2 * block, kMostBlock)) {
     const size_t before = text.size();
-    text.resize(before + kBlock);
-    in->read(&text[before], kBlock);
-    got = in->gcount();
-    text.resize(before + size_t(got));
+    text.resize(before + size_t(block));
+    in->read(&text[before], block);
+    text.resize(before + size_t(in->gcount()));
     if (std::int64_t(text.size()) > most) refuse(path, most, "more");
   }
   return text;
