@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <fstream>
+#include <new>
 
 namespace sketchsplat {
 
@@ -27,8 +28,12 @@ Stage::Stage(const std::string& name, int total, RunReport* report, Progress* pr
 
 Stage::~Stage() {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began_;
-  if (report_) report_->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
-  if (progress_) progress_->end(result_);
+  try {
+    if (report_) report_->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
+    if (progress_) progress_->end(result_);
+  } catch (const std::bad_alloc&) {
+    // Nothing may leave a destructor. Whoever has run out of memory says so; this is but a story.
+  }
 }
 
 void Stage::step() {

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/command/cli.h"
 
+#include <cxxabi.h>
 #include <omp.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <opencv2/core.hpp>
+#include <typeinfo>
 
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
@@ -22,6 +29,8 @@
 
 namespace sketchsplat {
 namespace {
+
+constexpr char kOutOfMemory[] = "out of memory";
 
 using Texts = std::map<std::string, std::string>;  // option -> what the user gave
 
@@ -221,8 +230,18 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
 int complain(ExitStatus status, const std::string& text) {
   const bool color = Progress::stderr_has_color();
   std::fprintf(stderr, color ? "\033[31msketchsplat:\033[0m %s\n" : "sketchsplat: %s\n",
-               text.c_str());
+               one_line(text).c_str());
   return status;
+}
+
+// Some libraries ask for memory in destructors (Open CASCADE's sessions, JSON), which no exception
+// can leave: this is what is left to say then. All else is a defect, and worth a core.
+[[noreturn]] void end_without_memory() {
+  const std::type_info* const type = abi::__cxa_current_exception_type();
+  const char* const name = type ? type->name() : "";
+  if (!std::strstr(name, "bad_alloc") && !std::strstr(name, "OutOfMemory")) std::abort();
+  std::fprintf(stderr, "sketchsplat: %s\n", kOutOfMemory);
+  ::_exit(kDefect);
 }
 
 }  // namespace
@@ -233,6 +252,7 @@ std::vector<Verb> all_verbs() {
 }
 
 int run_command_line(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
+  std::set_terminate(end_without_memory);
   try {
     run(argc, argv, verbs);
     std::cout.flush();
@@ -260,9 +280,14 @@ int run_command_line(int argc, const char* const* argv, const std::vector<Verb>&
     std::raise(e.number);
     return 128 + e.number;
   } catch (const std::bad_alloc&) {
-    return complain(kDefect, "out of memory");
+    return complain(kDefect, kOutOfMemory);
+  } catch (const cv::Exception& e) {
+    if (e.code == cv::Error::StsNoMem) return complain(kDefect, kOutOfMemory);
+    return complain(kDefect, std::string("a defect of the program: ") + e.what());
   } catch (const std::exception& e) {
     return complain(kDefect, std::string("a defect of the program: ") + e.what());
+  } catch (...) {
+    return complain(kDefect, "a defect of the program: an exception without a word");
   }
 }
 

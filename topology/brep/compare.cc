@@ -11,12 +11,14 @@
 #include <Message_Printer.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <cmath>
 #include <gp_Trsf.hxx>
 #include <limits>
+#include <new>
 #include <vector>
 
 #include "datasets/types/errors.h"
@@ -164,6 +166,8 @@ SolidComparison compare_solids(const std::string& path, const std::string& true_
     for (double* length : {&out.to_truth, &out.from_truth, &out.largest_distance})
       *length /= factor;
     return out;
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
     const char* message = failure.GetMessageString();
     throw InputError(path, "solids that can be compared", message ? message : "others");

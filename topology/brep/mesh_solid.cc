@@ -4,7 +4,9 @@
 #include <BRepGProp.hxx>
 #include <GProp_GProps.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include "topology/brep/build_solid.h"
@@ -42,6 +44,8 @@ std::vector<FaceMesh> mesh_solid(const Solid& solid, double deflection) {
       out.push_back(mesh_of(face, deflection * extent * factor, factor));
   } catch (const brep::Refused&) {
     out.clear();
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
   } catch (const Standard_Failure&) {
     out.clear();
   }

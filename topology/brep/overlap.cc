@@ -3,9 +3,11 @@
 
 #include <BRepAlgoAPI_Common.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 
 #include "topology/brep/check.h"
 
@@ -111,6 +113,8 @@ double overlap_by_boolean(const TopoDS_Shape& a, const TopoDS_Shape& b) {
     const double both = volume_of(common.Shape());
     const double either = volume_of(a) + volume_of(b) - both;
     return either > 0 ? both / either : -1;
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
   } catch (const Standard_Failure&) {
     return -1;
   }

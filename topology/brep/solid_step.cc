@@ -3,8 +3,10 @@
 
 #include <BRepBuilderAPI_Transform.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <cmath>
 #include <gp_Trsf.hxx>
+#include <new>
 #include <vector>
 
 #include "datasets/types/errors.h"
@@ -52,6 +54,8 @@ SolidCheck write_solid_step(const Solid& solid, const std::string& path,
       write_scaled(built, options.scale * millimetres(options.unit) / factor, path, options);
   } catch (const brep::Refused& why) {
     return refused(why.what());
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
     const std::string what = failure.GetMessageString() ? failure.GetMessageString() : "";
     return refused("OpenCASCADE gives up" + (what.empty() ? "" : ": " + what));
