@@ -234,13 +234,17 @@ int complain(ExitStatus status, const std::string& text) {
   return status;
 }
 
-// Some libraries ask for memory in destructors (Open CASCADE's sessions, JSON), which no exception
-// can leave: this is what is left to say then. All else is a defect, and worth a core.
+// Some libraries ask for memory in destructors (Open CASCADE's sessions, JSON, Ceres' timers), which
+// no exception can leave: this is what is left to say then. The compiler does not always tell which
+// exception it was. All else is a defect, and worth a core.
 [[noreturn]] void end_without_memory() {
   const std::type_info* const type = abi::__cxa_current_exception_type();
   const char* const name = type ? type->name() : "";
-  if (!std::strstr(name, "bad_alloc") && !std::strstr(name, "OutOfMemory")) std::abort();
-  std::fprintf(stderr, "sketchsplat: %s\n", kOutOfMemory);
+  const bool unknown = !type && std::uncaught_exceptions() > 0;
+  if (!unknown && !std::strstr(name, "bad_alloc") && !std::strstr(name, "OutOfMemory"))
+    std::abort();
+  std::fprintf(stderr, "sketchsplat: %s\n",
+               unknown ? "a destructor failed, most likely for want of memory" : kOutOfMemory);
   ::_exit(kDefect);
 }
 
