@@ -19,8 +19,8 @@ struct PagePhoto {
 constexpr size_t kMostPhotoBytes = 1'500'000;
 
 /// The pictures of at most 100 views of a scene, spread over the directions to a point, so small
-/// that all of them fit into a page: copies of what others read while they work, for reading a
-/// picture takes longer than all else that a page takes.
+/// that all of them fit into a page: copies of what others read while they work, so that no picture
+/// has to be read again for it.
 class PhotoAlbum {
  public:
   /// `target`: about where the cameras look, world units.
