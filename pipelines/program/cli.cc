@@ -234,9 +234,9 @@ int complain(ExitStatus status, const std::string& text) {
   return status;
 }
 
-// Some libraries ask for memory in destructors (Open CASCADE's sessions, JSON, Ceres' timers), which
-// no exception can leave: this is what is left to say then. The compiler does not always tell which
-// exception it was. All else is a defect, and worth a core.
+// Some libraries ask for memory in destructors (Open CASCADE's sessions, JSON, Ceres' timers),
+// which no exception can leave: this is what is left to say then. The compiler does not always
+// tell which exception it was. All else is a defect, and worth a core.
 [[noreturn]] void end_without_memory() {
   const std::type_info* const type = abi::__cxa_current_exception_type();
   const char* const name = type ? type->name() : "";

@@ -31,9 +31,9 @@ namespace fs = std::filesystem;
 using test::FailingMemory;
 
 // Ceres (BlockJacobianWriter) and the JSON library step on null pointers where they get no memory:
-// known, rare, and not ours. Nor are threads that a child waits for in vain: CHOLMOD has some of its
-// own, which do not live on in a fork.
-constexpr int kMostCrashes = 5;          // of some hundred places
+// known, rare, and not ours. Nor are threads that a child waits for in vain: CHOLMOD has some of
+// its own, which do not live on in a fork.
+constexpr int kMostCrashes = 5;           // of some hundred places
 constexpr unsigned kLongestSeconds = 10;  // of a child, then it is ended by SIGALRM
 
 bool is_theirs(const std::string& end) {
