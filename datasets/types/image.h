@@ -43,7 +43,8 @@ Image<T> cut(const Image<T>& image, int x0, int y0, int width, int height) {
 /// A picture as the detectors want it: RGB in [0, 1], never premultiplied, and its mask.
 struct Picture {
   Image<float> red, green, blue;
-  Image<float> alpha;  ///< in [0, 1]; empty if the file has no alpha
+  Image<float> alpha;    ///< in [0, 1]; empty if the file has no alpha
+  double beyond_px = 0;  ///< [px] by which alpha may reach beyond the object that it is of
   int width() const { return red.width; }
   int height() const { return red.height; }
 };

@@ -95,13 +95,17 @@ float measure_noise(const Composite& c) {
   return median(std::move(r)) / (0.6745f * 6.f);
 }
 
-// Pixels whose gradient the end of the mask makes.
-cv::Mat1b outline_band(const Composite& c, double sigma_px) {
-  const int reach = int(std::ceil(3 * sigma_px));
-  const cv::Mat around = cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U);
+// Pixels whose gradient the end of the mask makes, or that of an object which ends up to
+// `beyond_px` inside of it.
+cv::Mat1b outline_band(const Composite& c, double sigma_px, double beyond_px) {
+  const double reach = 3 * sigma_px;
+  const auto square = [](double px) {
+    const int side = 2 * int(std::ceil(px)) + 1;
+    return cv::Mat::ones(side, side, CV_8U);
+  };
   cv::Mat1b wide, narrow;
-  cv::dilate(c.inside, wide, around);
-  cv::erode(c.inside, narrow, around);
+  cv::dilate(c.inside, wide, square(reach));
+  cv::erode(c.inside, narrow, square(reach + beyond_px));
   return wide & ~narrow;
 }
 
@@ -183,7 +187,8 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   const float low = float(std::max(kLowFloor / 255, options.low_sigma * unit * map.noise));
   const float high = float(std::max(kHighFloor / 255, options.high_sigma * unit * map.noise));
   chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
-  keep_meaningful(g.magnitude, outline_band(c, options.sigma_px), options.meaning, &map);
+  keep_meaningful(g.magnitude, outline_band(c, options.sigma_px, picture.beyond_px),
+                  options.meaning, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
   map.blur = median_width(map);
   if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);

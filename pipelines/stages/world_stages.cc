@@ -92,6 +92,7 @@ void detect_on_silhouettes(const Scene& scene, const Detector& detector, const S
     view.make_picture = [&] {
       Picture picture = read_picture(world->views[v]);
       picture.alpha = alpha_around(mask, kAround);
+      picture.beyond_px = kAround + found.slack_px[v];
       return picture;
     };
     try {

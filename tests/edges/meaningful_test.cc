@@ -134,6 +134,30 @@ TEST(Meaningful, AShortEdgeOnARodStaysHoweverStrongTheOutlineIs) {
   }
 }
 
+// Where colours told it from a table, alpha holds some of the table, too, and the object's outline
+// is contrast of the picture.
+TEST(Meaningful, AShortEdgeOnARodStaysIfAlphaReachesBeyondTheRod) {
+  constexpr int kEdge = 120, kLength = 12, kBeyond = 10;
+  int on_edge[2] = {};
+  for (const bool known : {false, true}) {
+    Picture p = grey_picture(160, 240, 0.5f);
+    for (int y = 0; y < 240; ++y)
+      for (int x = 0; x < 160; ++x)
+        if (x < 60 || x >= 100) add(&p, x, y, 0.2 + 0.1 * ((x * 7 + y * 13) % 5 > 2));
+    for (int x = 80 - kLength / 2; x < 80 + kLength / 2; ++x)
+      for (int y = kEdge; y < kEdge + 4; ++y) add(&p, x, y, 0.05);
+    add_speckles(&p, 300, 0.03);
+    p.alpha = Image<float>(160, 240, 0.f);
+    for (int y = 40; y < 200; ++y)
+      for (int x = 60 - kBeyond; x < 100 + kBeyond; ++x) p.alpha.at(x, y) = 1;
+    if (known) p.beyond_px = kBeyond;
+    for (const Edgel& e : detect_edges(p, {}).edgels)
+      on_edge[known] += std::abs(e.y - kEdge + 0.5) < 1.5 && std::abs(e.x - 79.5) < kLength / 2;
+  }
+  EXPECT_GE(on_edge[true], 0.8 * kLength);
+  EXPECT_LT(on_edge[false], 0.5 * kLength) << "else this tests nothing";
+}
+
 TEST(Meaningful, AnEmptyMapStaysEmpty) {
   EdgelMap map;
   map.width = map.height = 20;
