@@ -16,11 +16,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Plane = Eigen::Hyperplane<double, 3>;
 
-constexpr int kTrials = 3000;       // planes through three points
-constexpr int kMostPoints = 3000;   // that judge them
+constexpr int kTrials = 3000;            // planes through three points
+constexpr int kMostPoints = 3000;        // that judge them
 constexpr double kSameDirection = 0.96;  // cosine
 constexpr double kNear = 0.25;  // of what the cameras look at: how far from its middle things count
-constexpr double kBelow = 4;        // points that lie on a plane make up for one far below it
+constexpr double kBelow = 4;    // points that lie on a plane make up for one far below it
 constexpr double kMostBelow = 0.1;  // of the points, far below a table
 
 struct Judged {
@@ -121,30 +121,6 @@ std::vector<int> group_of(const std::vector<Vector2d>& places, double cell, int*
   return out;
 }
 
-// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a
-// gap.
-std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
-                            int start, double footprint, const RegionOptions& options) {
-  std::vector<char> own(1 + *std::max_element(group.begin(), group.end()), 0);
-  own[start] = 1;
-  std::vector<Vector2d> taken;
-  for (bool more = true; more;) {
-    more = false;
-    taken.clear();
-    Eigen::AlignedBox2d box;
-    for (size_t i = 0; i < places.size(); ++i)
-      if (own[group[i]]) taken.push_back(places[i]), box.extend(places[i]);
-    const double gap = std::max(options.gap_px * footprint, options.gap * box.sizes().norm());
-    for (size_t i = 0; i < places.size(); ++i) {
-      if (own[group[i]] || box.exteriorDistance(places[i]) > gap) continue;
-      more |= own[group[i]] = std::any_of(taken.begin(), taken.end(), [&](const Vector2d& p) {
-        return (p - places[i]).squaredNorm() < gap * gap;
-      });
-    }
-  }
-  return taken;
-}
-
 double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
 }
@@ -175,6 +151,43 @@ bool is_inside(const std::vector<Vector2d>& polygon, const Vector2d& p) {
   for (size_t i = 0; i < polygon.size(); ++i)
     if (cross(polygon[i], polygon[(i + 1) % polygon.size()], p) < 0) return false;
   return !polygon.empty();
+}
+
+// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a
+// gap; and at last those of groups around all that.
+std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
+                            int start, double footprint, const RegionOptions& options) {
+  std::vector<char> own(1 + *std::max_element(group.begin(), group.end()), 0);
+  own[start] = 1;
+  std::vector<Vector2d> taken;
+  for (bool more = true; more;) {
+    more = false;
+    taken.clear();
+    Eigen::AlignedBox2d box;
+    for (size_t i = 0; i < places.size(); ++i)
+      if (own[group[i]]) taken.push_back(places[i]), box.extend(places[i]);
+    const double gap = std::max(options.gap_px * footprint, options.gap * box.sizes().norm());
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (own[group[i]] || box.exteriorDistance(places[i]) > gap) continue;
+      more |= own[group[i]] = std::any_of(taken.begin(), taken.end(), [&](const Vector2d& p) {
+        return (p - places[i]).squaredNorm() < gap * gap;
+      });
+    }
+  }
+  const std::vector<Vector2d> inner = convex_hull(taken);
+  for (int g = 0; g < int(own.size()); ++g) {
+    if (own[g]) continue;
+    std::vector<Vector2d> others;
+    for (size_t i = 0; i < places.size(); ++i)
+      if (group[i] == g) others.push_back(places[i]);
+    const std::vector<Vector2d> outer = convex_hull(others);
+    // Things do not stand within each other: it is the foot of what is known, or its rim.
+    if (outer.size() > 2 && std::all_of(inner.begin(), inner.end(), [&](const Vector2d& corner) {
+          return is_inside(outer, corner);
+        }))
+      taken.insert(taken.end(), others.begin(), others.end());
+  }
+  return taken;
 }
 
 // Positions of the points that others on the same line bear out.
@@ -265,8 +278,7 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
 
   std::vector<Vector2d> places;
   for (const Vector3d& p : points)
-    if (table->signedDistance(p) > options.above_px * footprint)
-      places.push_back(region.frame * p);
+    if (table->signedDistance(p) > options.above_px * footprint) places.push_back(region.frame * p);
   int count = 0;
   const std::vector<int> group = group_of(places, 0.5 * options.gap_px * footprint, &count);
   std::vector<double> weight(count);

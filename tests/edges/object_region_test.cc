@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "edges/views/find_object.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "edges/views/find_object.h"
 #include "edges/views/focus.h"
 #include "edges/views/lift.h"
 #include "tests/support/wireframe.h"
@@ -111,28 +110,63 @@ TEST(ObjectRegion, WithoutATableEverythingMayBelongToTheObject) {
   for (const EdgePoint& p : points) EXPECT_TRUE(r.contains(p.position));
 }
 
+// Cloth, but for what lies beneath a disc about the middle.
+std::vector<EdgePoint> cloth_around(double radius) {
+  std::vector<EdgePoint> points;
+  for (double x = -1; x < 2.2; x += 0.16)
+    if (std::abs(x - 0.5) > radius + 0.02) add_segment({x, -1, 0}, {x, 2, 0}, 9, &points);
+  return points;
+}
+
+// A point in twelve pixels, about the middle.
+std::vector<Vector3d> add_ring(double radius, double height, std::vector<EdgePoint>* points) {
+  const int n = int(2 * M_PI * radius / (12 * kPixel));
+  std::vector<Vector3d> ring;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * i / n;
+    EdgePoint p;
+    p.position = Vector3d(0.5 + radius * std::cos(a), 0.5 + radius * std::sin(a), height);
+    p.tangent = Vector3d(-std::sin(a), std::cos(a), 0);
+    p.views = 7;
+    points->push_back(p);
+    ring.push_back(p.position);
+  }
+  return ring;
+}
+
 TEST(ObjectRegion, RingsOnATableAreWhole) {
   for (const double radius_px : {50.0, 100.0}) {
     const double radius = radius_px * kPixel;
-    std::vector<EdgePoint> points;
-    for (double x = -1; x < 2.2; x += 0.16)
-      if (std::abs(x - 0.5) > radius + 0.02) add_segment({x, -1, 0}, {x, 2, 0}, 9, &points);
-    const int n = int(2 * M_PI * radius_px / 12);  // a point in twelve pixels
-    std::vector<Vector3d> ring;
-    for (int i = 0; i < n; ++i) {
-      const double a = 2 * M_PI * i / n;
-      EdgePoint p;
-      p.position = Vector3d(0.5 + radius * std::cos(a), 0.5 + radius * std::sin(a), 0.4);
-      p.tangent = Vector3d(-std::sin(a), std::cos(a), 0);
-      p.views = 7;
-      points.push_back(p);
-      ring.push_back(p.position);
-    }
+    std::vector<EdgePoint> points = cloth_around(radius);
+    const std::vector<Vector3d> ring = add_ring(radius, 0.4, &points);
     const ObjectRegion r = find_object(points, cameras(), kMiddle, 1.2, kPixel, {});
     ASSERT_TRUE(r.table);
     for (const Vector3d& x : ring) EXPECT_TRUE(r.contains(x)) << radius_px;
     EXPECT_LT(r.box.sizes().head<2>().maxCoeff(), 2 * radius + 80 * kPixel);
   }
+}
+
+// The rim is farther from the hub than what stands beside the flange is from it.
+TEST(ObjectRegion, TheRimOfAFlangeBelongsToItsHub) {
+  const double hub = 50 * kPixel, rim = 190 * kPixel;
+  std::vector<EdgePoint> points = cloth_around(rim);
+  std::vector<Vector3d> own = add_ring(hub, 0.5, &points);
+  for (const Vector3d& x : add_ring(rim, 0.1, &points)) own.push_back(x);
+  const double beside = 0.5 + rim + 80 * kPixel;
+  for (const Polyline& e : cube_edges({beside, 0.45, 0}, 0.1)) add_segment(e[0], e[1], 12, &points);
+  const ObjectRegion r = find_object(points, cameras(), kMiddle, 1.2, kPixel, {});
+  ASSERT_TRUE(r.table);
+  for (const Vector3d& x : own) EXPECT_TRUE(r.contains(x)) << x.transpose();
+  EXPECT_FALSE(r.contains({beside + 0.1, 0.5, 0.1})) << "a box beside it";
+}
+
+// One lone point is its own hull, and so are two.
+TEST(ObjectRegion, WhatIsAroundNothingIsNotAroundTheObject) {
+  std::vector<EdgePoint> points = cube_on_a_table();
+  add_segment({1.6, 1.6, 0.3}, {1.6, 1.6, 0.36}, 12, &points);
+  const ObjectRegion r = find_object(points, cameras(), kMiddle, 1.2, kPixel, {});
+  ASSERT_TRUE(r.table);
+  EXPECT_FALSE(r.contains({1.6, 1.6, 0.33}));
 }
 
 TEST(ObjectRegion, OfNothingNothingIsKnown) {
