@@ -11,6 +11,7 @@ namespace {
 constexpr double kSurroundings = 0.2;  // of the longest side of where the object may be
 constexpr int kLeastSurroundings = 8;  // [px]
 constexpr int kFewestPixels = 64;      // of either kind: colours of fewer tell nothing
+constexpr uint8_t kLikely = 2;
 
 cv::Mat3b colours(const Picture& picture, const cv::Rect& part) {
   cv::Mat3b out(part.size());
@@ -36,10 +37,13 @@ Image<uint8_t> cut_out(const Picture& picture, const Image<uint8_t>& maybe, int 
       cv::Rect(0, 0, maybe.width, maybe.height);
   const int may = cv::countNonZero(inside);
   if (may < kFewestPixels || part.area() - may < kFewestPixels) return {};
+  const int first = cv::countNonZero(inside == kLikely) < kFewestPixels ? 1 : kLikely;
   cv::Mat1b label(part.size());
   for (int y = 0; y < part.height; ++y)
-    for (int x = 0; x < part.width; ++x)
-      label(y, x) = inside(part.y + y, part.x + x) ? cv::GC_PR_FGD : cv::GC_BGD;
+    for (int x = 0; x < part.width; ++x) {
+      const int here = inside(part.y + y, part.x + x);
+      label(y, x) = here >= first ? cv::GC_PR_FGD : here > 0 ? cv::GC_PR_BGD : cv::GC_BGD;
+    }
   cv::Mat background, foreground;
   cv::theRNG().state = 1;  // of this thread: where the means of colours start
   cv::grabCut(colours(picture, part), label, {}, background, foreground, rounds,

@@ -293,13 +293,18 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   region.above = options.above_px * footprint;
   region.outline = convex_hull(widened(own, options.reach_px * footprint));
   region.outline_on_table = convex_hull(widened(own, margin));
+  RegionOptions near_by = options;
+  near_by.gap = 0;
+  const std::vector<Vector2d> sure =
+      convex_hull(widened(grown(places, group, best, footprint, near_by), margin));
   std::vector<Vector3d> inside;
-  for (const Vector3d& p : points)
-    if (table->signedDistance(p) > region.above && is_inside(region.outline, region.frame * p)) {
-      region.edges.push_back(p);
-      inside.push_back(p);
-      inside.push_back(table->projection(p));  // it stands there, whether that is seen or not
-    }
+  for (const Vector3d& p : points) {
+    const Vector2d place = region.frame * p;
+    if (!(table->signedDistance(p) > region.above) || !is_inside(region.outline, place)) continue;
+    if (is_inside(sure, place)) region.edges.push_back(p);
+    inside.push_back(p);
+    inside.push_back(table->projection(p));  // it stands there, whether that is seen or not
+  }
   region.box = box_of(inside, options.reach_px * footprint);
   return region;
 }

@@ -17,7 +17,7 @@ struct ObjectRegion {
   /// the plane's frame (x, y of `frame`); empty without a table. The one on the table is smaller.
   std::vector<Eigen::Vector2d> outline, outline_on_table;
   Eigen::Matrix<double, 2, 3> frame = Eigen::Matrix<double, 2, 3>::Zero();
-  std::vector<Eigen::Vector3d> edges;  ///< points on its edges, as far as any are known
+  std::vector<Eigen::Vector3d> edges;  ///< points on its edges, of which that is sure
 
   bool contains(const Eigen::Vector3d& point) const;
 };

@@ -82,14 +82,25 @@ std::vector<Vector3d> prism_of(const ObjectRegion& region) {
   return out;
 }
 
-// Where in the picture the object may be; empty if nobody knows.
+// The known edges, and the table below them, which the object hides.
+std::vector<Vector3d> known_of(const ObjectRegion& region) {
+  std::vector<Vector3d> out = region.edges;
+  if (region.table)
+    for (const Vector3d& p : region.edges) out.push_back(region.table->projection(p));
+  return out;
+}
+
+// Where in the picture the object may be, and, within what is known of it, where that is likely, as
+// of cut_out; empty if nobody knows.
 cv::Mat1b may_be(const Shrunk& shrunk, const ObjectRegion& region) {
   cv::Mat1b inside = drawn_hull(shrunk, corners_of(region.box));
-  if (region.table && !inside.empty()) {
+  if (inside.empty()) return inside;
+  if (region.table) {
     const cv::Mat1b standing = drawn_hull(shrunk, prism_of(region));
     if (!standing.empty()) inside &= standing;
   }
-  return inside;
+  const cv::Mat1b likely = drawn_hull(shrunk, known_of(region));
+  return likely.empty() ? inside : inside + (inside & likely);
 }
 
 Image<uint8_t> image_of(const cv::Mat1b& mask) {
@@ -131,12 +142,27 @@ Cut read_cut(const View& view, const ObjectRegion& region, double object_px,
 
 // `maybe`: where the object may be, empty if nobody knows.
 void cut_again(const cv::Mat1b& maybe, int rounds, Cut* cut) {
-  cut->mask = {};
+  cut->mask.release(), cut->distance.release();
   if (cut->denominator == 0 || maybe.empty()) return;
   const Image<uint8_t> found = cut_out(cut->picture, image_of(maybe), rounds);
   if (found.empty()) return;
   cut->mask = cv::Mat1b(found.height, found.width, const_cast<uint8_t*>(found.data.data())).clone();
   cv::distanceTransform(cut->mask == 0, cut->distance, cv::DIST_L2, 3);
+}
+
+// Share of the points whose pixels a cut holds, of those that the picture shows; 1 of none.
+double share_cut(const std::vector<Vector3d>& points, const View& view, const Cut& cut) {
+  if (cut.mask.empty()) return 0;
+  int shown = 0, held = 0;
+  for (const Vector3d& p : points) {
+    Vector2d q;
+    if (!Shrunk{view, cut.denominator}.pixel(p, &q)) continue;
+    const int x = int(std::lround(q.x())), y = int(std::lround(q.y()));
+    if (x < 0 || y < 0 || x >= cut.mask.cols || y >= cut.mask.rows) continue;
+    ++shown;
+    held += cut.distance(y, x) <= kEndPx + 1;
+  }
+  return shown == 0 ? 1 : double(held) / shown;
 }
 
 // Places that nearly all views which see them hold, on a grid.
@@ -222,6 +248,13 @@ cv::Mat1b grown(const cv::Mat1b& mask, int px) {
 
 cv::Mat1b shrunk_by(const cv::Mat1b& mask, int px) { return 1 - grown(1 - mask, px); }
 
+// The part of it that is as far from its end as cells and cuts err.
+cv::Mat1b surely_covered(const Shrunk& shrunk, const Held& held, const ObjectRegion& region) {
+  const double depth = (shrunk.view.cam_from_world * region.box.center()).z();
+  const double cell_px = held.cell * shrunk.view.camera.fx / (depth * shrunk.denominator);
+  return shrunk_by(covered(shrunk, held), int(std::ceil(1.4 * cell_px + kEndPx)));
+}
+
 double share(const cv::Mat1b& part, const cv::Mat1b& whole) {
   return double(cv::countNonZero(part & whole)) / std::max(1, cv::countNonZero(whole));
 }
@@ -234,27 +267,37 @@ Image<uint8_t> at_full_size(const cv::Mat1b& mask, const Camera& camera, int den
   return out;
 }
 
-}  // namespace
+// Cuts begin with the colours of all that may be the object, or of what is likely to be.
+enum class Start { kMayBe, kLikely };
 
-Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion& edges,
-                             const std::function<Picture(int view, int denominator)>& read,
-                             const SilhouetteOptions& options) {
+cv::Mat1b first_of(Start start, const cv::Mat1b& maybe) {
+  return start == Start::kLikely || maybe.empty() ? maybe : cv::Mat1b(cv::min(maybe, 1));
+}
+
+// `cuts`: as they were read.
+Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const ObjectRegion& edges,
+                             const ObjectRegion& region, const SilhouetteOptions& options,
+                             std::vector<Cut> cuts) {
   Silhouettes out;
-  if (edges.box.isEmpty() || views.size() < size_t(kFewestViews)) return out;
-  const ObjectRegion region = wider(edges, kBeyond * edges.box.sizes().maxCoeff());
   const int n = int(views.size());
-  std::vector<Cut> cuts(n);
   parallel_for(n, 1, [&](int v) {
-    cuts[v] = read_cut(views[v], region, options.object_px, [&](int d) { return read(v, d); });
-    if (cuts[v].denominator > 0)
-      cut_again(may_be({views[v], cuts[v].denominator}, region), kCoarseRounds, &cuts[v]);
+    if (cuts[v].denominator == 0) return;
+    const cv::Mat1b maybe = may_be({views[v], cuts[v].denominator}, region);
+    cut_again(first_of(start, maybe), kCoarseRounds, &cuts[v]);
+    if (share_cut(edges.edges, views[v], cuts[v]) < options.least_cut) cuts[v].mask.release();
   });
   Held held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
   // What others do not hold is no object, whatever its colours: without it these are told better.
   parallel_for(n, 1, [&](int v) {
+    if (cuts[v].denominator == 0) return;
     const Shrunk shrunk{views[v], cuts[v].denominator};
-    if (!cuts[v].mask.empty()) cut_again(grown(covered(shrunk, held), kAgainPx), kRounds, &cuts[v]);
+    const cv::Mat1b likely = covered(shrunk, held), sure = surely_covered(shrunk, held, region);
+    const Cut before = cuts[v];
+    cut_again(first_of(start, grown(likely, kAgainPx) + likely), kRounds, &cuts[v]);
+    const bool good = !cuts[v].mask.empty() && (cv::countNonZero(sure) == 0 ||
+                                                share(cuts[v].mask, sure) >= options.least_cut);
+    if (!good) cuts[v] = before;
   });
   held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
@@ -269,10 +312,7 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
     if (cut.mask.empty()) return;
     const Shrunk shrunk{views[v], cut.denominator};
     const cv::Mat1b all = covered(shrunk, held);
-    const double depth = (views[v].cam_from_world * region.box.center()).z();
-    const int wide =
-        int(std::ceil(1.4 * held.cell * views[v].camera.fx / (depth * cut.denominator) + kEndPx));
-    const cv::Mat1b sure = shrunk_by(all, wide);
+    const cv::Mat1b sure = surely_covered(shrunk, held, region);
     const double others = share(grown(cut.mask, 1), sure);
     agreement[v] = share(all, cut.mask);
     if (std::min(agreement[v], others) < 1 - options.most_disagreement) return;
@@ -284,6 +324,24 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
   out.agreement = median(std::move(agreement));
   if (out.trusted < std::max<double>(kFewestViews, options.least_trusted * n)) out.mask.clear();
   return out;
+}
+
+}  // namespace
+
+Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion& edges,
+                             const std::function<Picture(int view, int denominator)>& read,
+                             const SilhouetteOptions& options) {
+  if (edges.box.isEmpty() || views.size() < size_t(kFewestViews)) return {};
+  const ObjectRegion region = wider(edges, kBeyond * edges.box.sizes().maxCoeff());
+  std::vector<Cut> cuts(views.size());
+  parallel_for(int(cuts.size()), 1, [&](int v) {
+    cuts[v] = read_cut(views[v], region, options.object_px, [&](int d) { return read(v, d); });
+  });
+  // What is likely tells objects among things of many colours, but may be too little of one whose
+  // colours the table has, too.
+  const Silhouettes wide = silhouettes_from(Start::kMayBe, views, edges, region, options, cuts);
+  if (!wide.mask.empty()) return wide;
+  return silhouettes_from(Start::kLikely, views, edges, region, options, cuts);
 }
 
 namespace {

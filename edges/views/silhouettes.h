@@ -15,8 +15,9 @@ struct SilhouetteOptions {
   /// Share of a silhouette that all views together do not hold, and the other way round, up to
   /// which its view is trusted.
   double most_disagreement = 0.1;
-  double least_edges = 0.95;    ///< share of the object's known edges that silhouettes must hold
-  double least_trusted = 0.75;  ///< share of the views, with fewer of which nothing is known
+  double least_cut = 0.8;     ///< share of the known edges with fewer of which a first cut is wrong
+  double least_edges = 0.95;  ///< share of the object's known edges that silhouettes must hold
+  double least_trusted = 0.5;  ///< share of the views, with fewer of which nothing is known
 };
 
 /// Silhouettes of one rigid object are consistent: what most views hold, projected, is each of

@@ -169,6 +169,18 @@ TEST(ObjectRegion, WhatIsAroundNothingIsNotAroundTheObject) {
   EXPECT_FALSE(r.contains({1.6, 1.6, 0.33}));
 }
 
+// Large things fall apart, seen from above, so that a neighbour may be taken for a part.
+TEST(ObjectRegion, OnlyWhatHangsTogetherIsSurelyTheObjects) {
+  std::vector<EdgePoint> points = cube_on_a_table();
+  const double beside = 0.9 + 36 * kPixel;
+  for (const Polyline& e : cube_edges({beside, 0.4, 0}, 0.1)) add_segment(e[0], e[1], 12, &points);
+  const ObjectRegion r = find_object(points, cameras(), kMiddle, 1.2, kPixel, {});
+  ASSERT_TRUE(r.table);
+  EXPECT_TRUE(r.contains({beside + 0.05, 0.45, 0.1}));
+  EXPECT_GT(r.edges.size(), 50u);
+  for (const Vector3d& p : r.edges) EXPECT_LT(p.x(), beside) << p.transpose();
+}
+
 TEST(ObjectRegion, OfNothingNothingIsKnown) {
   EXPECT_TRUE(find_object({}, cameras(), kMiddle, 1, kPixel, {}).contains({9, 9, 9}));
   EXPECT_TRUE(find_object(cube_on_a_table(), {}, kMiddle, 1, kPixel, {}).box.isEmpty());
