@@ -267,6 +267,16 @@ Image<uint8_t> at_full_size(const cv::Mat1b& mask, const Camera& camera, int den
   return out;
 }
 
+// A silhouette that leaves the picture does not say where the object ends.
+bool is_whole(const Image<uint8_t>& mask) {
+  if (mask.empty()) return false;
+  for (int x = 0; x < mask.width; ++x)
+    if (mask.at(x, 0) || mask.at(x, mask.height - 1)) return false;
+  for (int y = 0; y < mask.height; ++y)
+    if (mask.at(0, y) || mask.at(mask.width - 1, y)) return false;
+  return true;
+}
+
 // Cuts begin with the colours of all that may be the object, or of what is likely to be.
 enum class Start { kMayBe, kLikely };
 
@@ -320,9 +330,15 @@ Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const 
                                views[v].camera, cut.denominator);
     out.slack_px[v] = 2 * kEndPx * cut.denominator;
   });
-  for (const Image<uint8_t>& mask : out.mask) out.trusted += !mask.empty();
+  int whole = 0;
+  for (const Image<uint8_t>& mask : out.mask) {
+    out.trusted += !mask.empty();
+    whole += is_whole(mask);
+  }
   out.agreement = median(std::move(agreement));
-  if (out.trusted < std::max<double>(kFewestViews, options.least_trusted * n)) out.mask.clear();
+  if (out.trusted < std::max<double>(kFewestViews, options.least_trusted * n) ||
+      whole < kFewestViews)
+    out.mask.clear();
   return out;
 }
 

@@ -173,6 +173,13 @@ TEST(Silhouettes, WhereManyPicturesDisagreeNothingIsKnown) {
   EXPECT_TRUE(find_silhouettes(views, ObjectRegion(), none).mask.empty());
 }
 
+TEST(Silhouettes, OfAnObjectThatNoPictureShowsWholeNothingIsKnown) {
+  std::vector<View> views = ring_of_views(10, kMiddle, 3);
+  ASSERT_FALSE(found(views, {}).mask.empty());
+  for (View& view : views) view.camera.height /= 2;  // the upper half of each picture alone
+  EXPECT_TRUE(found(views, {}).mask.empty());
+}
+
 TEST(Silhouettes, ThatLeaveOutEdgesOfTheObjectAreNone) {
   const std::vector<View> views = ring_of_views(10, kMiddle, 3);
   ObjectRegion region = around_ball();
