@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
-#include "datasets/types/errors.h"
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
-#include "edges/image/cut_out.h"
 #include "edges/views/find_object.h"
+#include "edges/views/picture_cut.h"
 
 namespace sketchsplat {
 namespace {
@@ -20,8 +18,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kCells = 64;       // along the longest side of the region
-constexpr double kEndPx = 1;     // [px] of shrunk pictures by which cuts miss the object's end
+constexpr int kCells = 64;  // along the longest side of the region
+constexpr double kEndPx = PictureCut::kEndPx;
 constexpr double kBeyond = 0.1;  // of the region's longest side, that may be the object's, too
 constexpr int kCoarseRounds = 2, kRounds = 3;  // of colours and cuts
 constexpr int kAgainPx = 3;  // [px] around what most views hold, where it may be, too
@@ -29,149 +27,13 @@ constexpr int kFewestViews = 3;
 constexpr double kLookupPx = 4;  // as the detectors'
 constexpr int kMinChain = 3;     // edgels of a chain that leaves the silhouette
 
-// A view of a picture that is some times smaller.
-struct Shrunk {
-  const View& view;
-  int denominator;
-  int width() const { return view.camera.shrunk(denominator).width; }
-  int height() const { return view.camera.shrunk(denominator).height; }
-  // Pixel where a world point is drawn; false behind the camera, or where the lens draws nothing.
-  bool pixel(const Vector3d& point, Vector2d* out, double* depth = nullptr) const {
-    double z;
-    const Vector2d ideal = view.project(point, &z);
-    if (depth) *depth = z;
-    if (!(z > 0) || !view.image_pixel(ideal, out)) return false;
-    *out = (*out + Vector2d::Constant(0.5)) / denominator - Vector2d::Constant(0.5);
-    return std::abs(out->x()) < 1e5 && std::abs(out->y()) < 1e5;
-  }
-};
-
-// The convex hull of points in a picture; empty if one is not drawn.
-cv::Mat1b drawn_hull(const Shrunk& shrunk, const std::vector<Vector3d>& points) {
-  std::vector<cv::Point> pixels, hull;
-  for (const Vector3d& p : points) {
-    Vector2d q;
-    if (!shrunk.pixel(p, &q)) return {};
-    pixels.emplace_back(int(std::lround(q.x())), int(std::lround(q.y())));
-  }
-  cv::Mat1b out = cv::Mat1b::zeros(shrunk.height(), shrunk.width());
-  if (pixels.empty()) return out;
-  cv::convexHull(pixels, hull);
-  cv::fillConvexPoly(out, hull, 1);
-  return out;
-}
-
-std::vector<Vector3d> corners_of(const Eigen::AlignedBox3d& box) {
-  std::vector<Vector3d> out;
-  for (int k = 0; k < 8; ++k) out.push_back(box.corner(Eigen::AlignedBox3d::CornerType(k)));
-  return out;
-}
-
-// The prism of what stands on the table, as high as the box.
-std::vector<Vector3d> prism_of(const ObjectRegion& region) {
-  std::vector<Vector3d> out;
-  double top = 0;
-  for (const Vector3d& c : corners_of(region.box))
-    top = std::max(top, region.table->signedDistance(c));
-  const Vector3d normal = region.table->normal(), on_table = -region.table->offset() * normal;
-  for (const Vector2d& corner : region.outline) {
-    const Vector3d foot = region.frame.transpose() * corner + on_table;
-    out.push_back(foot);
-    out.push_back(foot + top * normal);
-  }
-  return out;
-}
-
-// The known edges, and the table below them, which the object hides.
-std::vector<Vector3d> known_of(const ObjectRegion& region) {
-  std::vector<Vector3d> out = region.edges;
-  if (region.table)
-    for (const Vector3d& p : region.edges) out.push_back(region.table->projection(p));
-  return out;
-}
-
-// Where in the picture the object may be, and, within what is known of it, where that is likely, as
-// of cut_out; empty if nobody knows.
-cv::Mat1b may_be(const Shrunk& shrunk, const ObjectRegion& region) {
-  cv::Mat1b inside = drawn_hull(shrunk, corners_of(region.box));
-  if (inside.empty()) return inside;
-  if (region.table) {
-    const cv::Mat1b standing = drawn_hull(shrunk, prism_of(region));
-    if (!standing.empty()) inside &= standing;
-  }
-  const cv::Mat1b likely = drawn_hull(shrunk, known_of(region));
-  return likely.empty() ? inside : inside + (inside & likely);
-}
-
-Image<uint8_t> image_of(const cv::Mat1b& mask) {
-  Image<uint8_t> out(mask.cols, mask.rows);
-  for (int y = 0; y < out.height; ++y) std::copy_n(mask[y], out.width, out.row(y));
-  return out;
-}
-
-// So that the object's longer side is about so many pixels.
-int denominator_of(const View& view, const ObjectRegion& region, double object_px) {
-  Eigen::AlignedBox2d box;
-  for (const Vector3d& c : corners_of(region.box)) {
-    Vector2d q;
-    if (!Shrunk{view, 1}.pixel(c, &q)) return 0;
-    box.extend(q);
-  }
-  return std::max(1, int(std::lround(box.sizes().maxCoeff() / object_px)));
-}
-
-// A picture, shrunk, and what is cut out of it.
-struct Cut {
-  int denominator = 0;  // 0: the picture tells nothing
-  Picture picture;
-  cv::Mat1b mask;      // 1 on the object; empty: unknown
-  cv::Mat1f distance;  // [px] to the nearest pixel of it
-};
-
-Cut read_cut(const View& view, const ObjectRegion& region, double object_px,
-             const std::function<Picture(int denominator)>& read) {
-  Cut cut;
-  try {
-    cut.denominator = denominator_of(view, region, object_px);
-    if (cut.denominator > 0) cut.picture = read(cut.denominator);
-  } catch (const InputError&) {
-    cut.denominator = 0;  // the detector has said so
-  }
-  return cut;
-}
-
-// `maybe`: where the object may be, empty if nobody knows.
-void cut_again(const cv::Mat1b& maybe, int rounds, Cut* cut) {
-  cut->mask.release(), cut->distance.release();
-  if (cut->denominator == 0 || maybe.empty()) return;
-  const Image<uint8_t> found = cut_out(cut->picture, image_of(maybe), rounds);
-  if (found.empty()) return;
-  cut->mask = cv::Mat1b(found.height, found.width, const_cast<uint8_t*>(found.data.data())).clone();
-  cv::distanceTransform(cut->mask == 0, cut->distance, cv::DIST_L2, 3);
-}
-
-// Share of the points whose pixels a cut holds, of those that the picture shows; 1 of none.
-double share_cut(const std::vector<Vector3d>& points, const View& view, const Cut& cut) {
-  if (cut.mask.empty()) return 0;
-  int shown = 0, held = 0;
-  for (const Vector3d& p : points) {
-    Vector2d q;
-    if (!Shrunk{view, cut.denominator}.pixel(p, &q)) continue;
-    const int x = int(std::lround(q.x())), y = int(std::lround(q.y()));
-    if (x < 0 || y < 0 || x >= cut.mask.cols || y >= cut.mask.rows) continue;
-    ++shown;
-    held += cut.distance(y, x) <= kEndPx + 1;
-  }
-  return shown == 0 ? 1 : double(held) / shown;
-}
-
 // Places that nearly all views which see them hold, on a grid.
 struct Held {
   std::vector<Vector3d> places;
   double cell = 0;
 };
 
-Held held_by_most(const std::vector<View>& views, const std::vector<Cut>& cuts,
+Held held_by_most(const std::vector<View>& views, const std::vector<PictureCut>& cuts,
                   const ObjectRegion& region, double most_outvoted) {
   Held out;
   out.cell = region.box.sizes().maxCoeff() / kCells;
@@ -186,14 +48,12 @@ Held held_by_most(const std::vector<View>& views, const std::vector<Cut>& cuts,
     int asked = 0, no = 0;
     for (size_t v = 0; v < views.size(); ++v) {
       if (cuts[v].mask.empty()) continue;
-      Vector2d q;
       double depth;
-      if (!Shrunk{views[v], cuts[v].denominator}.pixel(p, &q, &depth)) continue;
-      const int x = int(std::lround(q.x())), y = int(std::lround(q.y()));
-      if (x < 0 || y < 0 || x >= cuts[v].mask.cols || y >= cuts[v].mask.rows) continue;
+      const double far = cuts[v].distance_px(views[v], p, &depth);
+      if (std::isnan(far)) continue;
       const double cell_px = out.cell * views[v].camera.fx / (depth * cuts[v].denominator);
       ++asked;
-      no += cuts[v].distance(y, x) > kEndPx + 0.5 * cell_px;
+      no += far > kEndPx + 0.5 * cell_px;
     }
     held[size_t(i)] = asked >= kFewestViews && no <= most_outvoted * asked;
   });
@@ -221,7 +81,7 @@ double share_held(const std::vector<Vector3d>& points, const Held& held, const V
 }
 
 // What the places cover in a picture, as wide as their cells.
-cv::Mat1b covered(const Shrunk& shrunk, const Held& held) {
+cv::Mat1b covered(const ShrunkView& shrunk, const Held& held) {
   cv::Mat1b out = cv::Mat1b::zeros(shrunk.height(), shrunk.width());
   for (const Vector3d& p : held.places) {
     Vector2d q;
@@ -249,7 +109,7 @@ cv::Mat1b grown(const cv::Mat1b& mask, int px) {
 cv::Mat1b shrunk_by(const cv::Mat1b& mask, int px) { return 1 - grown(1 - mask, px); }
 
 // The part of it that is as far from its end as cells and cuts err.
-cv::Mat1b surely_covered(const Shrunk& shrunk, const Held& held, const ObjectRegion& region) {
+cv::Mat1b surely_covered(const ShrunkView& shrunk, const Held& held, const ObjectRegion& region) {
   const double depth = (shrunk.view.cam_from_world * region.box.center()).z();
   const double cell_px = held.cell * shrunk.view.camera.fx / (depth * shrunk.denominator);
   return shrunk_by(covered(shrunk, held), int(std::ceil(1.4 * cell_px + kEndPx)));
@@ -268,13 +128,10 @@ Image<uint8_t> at_full_size(const cv::Mat1b& mask, const Camera& camera, int den
 }
 
 // A silhouette that leaves the picture does not say where the object ends.
-bool is_whole(const Image<uint8_t>& mask) {
-  if (mask.empty()) return false;
-  for (int x = 0; x < mask.width; ++x)
-    if (mask.at(x, 0) || mask.at(x, mask.height - 1)) return false;
-  for (int y = 0; y < mask.height; ++y)
-    if (mask.at(0, y) || mask.at(mask.width - 1, y)) return false;
-  return true;
+bool is_whole(const cv::Mat1b& mask) {
+  return cv::countNonZero(mask.row(0)) + cv::countNonZero(mask.row(mask.rows - 1)) +
+             cv::countNonZero(mask.col(0)) + cv::countNonZero(mask.col(mask.cols - 1)) ==
+         0;
 }
 
 // Cuts begin with the colours of all that may be the object, or of what is likely to be.
@@ -284,31 +141,46 @@ cv::Mat1b first_of(Start start, const cv::Mat1b& maybe) {
   return start == Start::kLikely || maybe.empty() ? maybe : cv::Mat1b(cv::min(maybe, 1));
 }
 
+// First cuts; what leaves out most of the known edges is none.
+void cut_first(Start start, const std::vector<View>& views, const ObjectRegion& edges,
+               const ObjectRegion& region, const SilhouetteOptions& options,
+               std::vector<PictureCut>* cuts) {
+  parallel_for(int(views.size()), 1, [&](int v) {
+    PictureCut& cut = (*cuts)[v];
+    if (cut.denominator == 0) return;
+    cut_again(first_of(start, may_be({views[v], cut.denominator}, region)), kCoarseRounds, &cut);
+    if (cut.share(views[v], edges.edges) < options.least_cut) cut.mask.release();
+  });
+}
+
+// What others do not hold is no object, whatever its colours: without it these are told better. A
+// cut that loses what others hold does not count.
+void cut_what_most_hold(Start start, const std::vector<View>& views, const Held& held,
+                        const ObjectRegion& region, const SilhouetteOptions& options,
+                        std::vector<PictureCut>* cuts) {
+  parallel_for(int(views.size()), 1, [&](int v) {
+    PictureCut& cut = (*cuts)[v];
+    if (cut.denominator == 0) return;
+    const ShrunkView shrunk{views[v], cut.denominator};
+    const cv::Mat1b likely = covered(shrunk, held), sure = surely_covered(shrunk, held, region);
+    const PictureCut before = cut;
+    cut_again(first_of(start, grown(likely, kAgainPx) + likely), kRounds, &cut);
+    const bool good = !cut.mask.empty() &&
+                      (cv::countNonZero(sure) == 0 || share(cut.mask, sure) >= options.least_cut);
+    if (!good) cut = before;
+  });
+}
+
 // `cuts`: as they were read.
 Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const ObjectRegion& edges,
                              const ObjectRegion& region, const SilhouetteOptions& options,
-                             std::vector<Cut> cuts) {
+                             std::vector<PictureCut> cuts) {
   Silhouettes out;
   const int n = int(views.size());
-  parallel_for(n, 1, [&](int v) {
-    if (cuts[v].denominator == 0) return;
-    const cv::Mat1b maybe = may_be({views[v], cuts[v].denominator}, region);
-    cut_again(first_of(start, maybe), kCoarseRounds, &cuts[v]);
-    if (share_cut(edges.edges, views[v], cuts[v]) < options.least_cut) cuts[v].mask.release();
-  });
+  cut_first(start, views, edges, region, options, &cuts);
   Held held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
-  // What others do not hold is no object, whatever its colours: without it these are told better.
-  parallel_for(n, 1, [&](int v) {
-    if (cuts[v].denominator == 0) return;
-    const Shrunk shrunk{views[v], cuts[v].denominator};
-    const cv::Mat1b likely = covered(shrunk, held), sure = surely_covered(shrunk, held, region);
-    const Cut before = cuts[v];
-    cut_again(first_of(start, grown(likely, kAgainPx) + likely), kRounds, &cuts[v]);
-    const bool good = !cuts[v].mask.empty() && (cv::countNonZero(sure) == 0 ||
-                                                share(cuts[v].mask, sure) >= options.least_cut);
-    if (!good) cuts[v] = before;
-  });
+  cut_what_most_hold(start, views, held, region, options, &cuts);
   held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
   // Views may agree to take a face that looks like the table for it: edges tell.
@@ -317,28 +189,25 @@ Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const 
   out.mask.resize(n);
   out.slack_px.assign(n, 0);
   std::vector<double> agreement(n, 0);
+  std::vector<char> whole(n, 0);
   parallel_for(n, 1, [&](int v) {
-    const Cut& cut = cuts[v];
+    const PictureCut& cut = cuts[v];
     if (cut.mask.empty()) return;
-    const Shrunk shrunk{views[v], cut.denominator};
-    const cv::Mat1b all = covered(shrunk, held);
-    const cv::Mat1b sure = surely_covered(shrunk, held, region);
-    const double others = share(grown(cut.mask, 1), sure);
+    const ShrunkView shrunk{views[v], cut.denominator};
+    const cv::Mat1b all = covered(shrunk, held), sure = surely_covered(shrunk, held, region);
     agreement[v] = share(all, cut.mask);
-    if (std::min(agreement[v], others) < 1 - options.most_disagreement) return;
-    out.mask[v] = at_full_size(grown((cut.mask & all) | sure, int(std::ceil(kEndPx))),
-                               views[v].camera, cut.denominator);
+    if (std::min(agreement[v], share(grown(cut.mask, 1), sure)) < 1 - options.most_disagreement)
+      return;
+    const cv::Mat1b silhouette = grown((cut.mask & all) | sure, int(std::ceil(kEndPx)));
+    whole[v] = is_whole(silhouette);
+    out.mask[v] = at_full_size(silhouette, views[v].camera, cut.denominator);
     out.slack_px[v] = 2 * kEndPx * cut.denominator;
   });
-  int whole = 0;
-  for (const Image<uint8_t>& mask : out.mask) {
-    out.trusted += !mask.empty();
-    whole += is_whole(mask);
-  }
+  for (const Image<uint8_t>& mask : out.mask) out.trusted += !mask.empty();
   out.agreement = median(std::move(agreement));
-  if (out.trusted < std::max<double>(kFewestViews, options.least_trusted * n) ||
-      whole < kFewestViews)
-    out.mask.clear();
+  const bool enough = out.trusted >= std::max<double>(kFewestViews, options.least_trusted * n) &&
+                      std::count(whole.begin(), whole.end(), 1) >= kFewestViews;
+  if (!enough) out.mask.clear();
   return out;
 }
 
@@ -349,7 +218,7 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
                              const SilhouetteOptions& options) {
   if (edges.box.isEmpty() || views.size() < size_t(kFewestViews)) return {};
   const ObjectRegion region = wider(edges, kBeyond * edges.box.sizes().maxCoeff());
-  std::vector<Cut> cuts(views.size());
+  std::vector<PictureCut> cuts(views.size());
   parallel_for(int(cuts.size()), 1, [&](int v) {
     cuts[v] = read_cut(views[v], region, options.object_px, [&](int d) { return read(v, d); });
   });
