@@ -14,8 +14,8 @@ namespace sketchsplat {
 /// texture turn at random. Of every chain the pieces with the most evidence are kept; `meaning` of
 /// the map is filled in. `magnitude`: of the gradient, one value per pixel of what the edgels'
 /// coordinates refer to. `outline`, of the same size: not 0 in pixels whose gradient the end of the
-/// mask makes, or may make that of the object within it (Picture::beyond_px), which is no texture to
-/// judge other edges by.
+/// mask makes, or may make that of the object within it (Picture::beyond_px): no texture to judge
+/// other edges by.
 void keep_meaningful(const cv::Mat1f& magnitude, const cv::Mat1b& outline,
                      const MeaningOptions& options, EdgelMap* map);
 
