@@ -9,6 +9,7 @@
 #include "edges/views/lift.h"
 
 namespace sketchsplat {
+
 namespace {
 
 // Number of mask pixels above and left of each pixel: says at once whether a box touches the mask.
@@ -44,77 +45,190 @@ Share share(const Image<int>& sum, const View& view, const Eigen::Vector2d& idea
   Eigen::Matrix2d J;
   if (!view.image_pixel(ideal, &image, &J)) return kSome;
   // At least what a length can grow by, and hardly more: the spectral norm is no larger.
-  const double growth = std::sqrt(J.cwiseAbs().rowwise().sum().maxCoeff() *
-                                  J.cwiseAbs().colwise().sum().maxCoeff());
+  const double growth =
+      std::sqrt(J.cwiseAbs().rowwise().sum().maxCoeff() * J.cwiseAbs().colwise().sum().maxCoeff());
   return share(sum, image.x(), image.y(), r * growth);
 }
 
 constexpr double kSurroundings = 2.5;  // cells
+constexpr int kMostDenials = 8;        // views, and of all of them at most a quarter
+constexpr double kCovered = 0.99;      // of what masks hold, by a hull that agrees with them
+constexpr int kRays = 16;              // of a view, across the picture and down, that ask for it
+constexpr int kWithin = 2;             // [px] of the mask all around such a ray
+
+// A mask, as sums over what lies above and left of each pixel.
+struct Masked {
+  const View* view;
+  Image<int> sum;
+};
+
+std::vector<Masked> masked_views(const EdgeWorld& world) {
+  std::vector<const Image<uint8_t>*> masks;
+  std::vector<Masked> out;
+  for (size_t v = 0; v < world.maps.size(); ++v) {
+    const Image<uint8_t>& own = world.maps[v].mask;
+    const Image<uint8_t>& mask = own.empty() && world.silhouettes ? (*world.silhouettes)[v] : own;
+    if (mask.empty() || world.maps[v].edgels.empty()) continue;
+    masks.push_back(&mask);
+    out.push_back({&world.views[v], {}});
+  }
+  parallel_for(int(out.size()), 1, [&](int m) { out[m].sum = integral(*masks[m]); });
+  return out;
+}
+
+// What masks say of a part of space: how many of the views see none of it in theirs, counted up to
+// one more than `most`, and whether all others see it in theirs as a whole. Views outside of `open`
+// are known to; `cut` gets those that see its edge.
+struct Verdict {
+  uint8_t denials = 0;
+  bool whole = true;
+};
+Verdict verdict(const std::vector<Masked>& masks, const Eigen::Vector3d& p, double radius,
+                const std::vector<int>& open, int most, std::vector<int>* cut) {
+  Verdict out;
+  for (const int m : open) {
+    const View& v = *masks[m].view;
+    double z;
+    const Eigen::Vector2d q = v.project(p, &z);
+    if (!(z > 0)) continue;
+    const Share here = share(masks[m].sum, v, q, radius * v.camera.fx / z);
+    if (here == kNone && ++out.denials > most) return out;
+    if (here == kAll) continue;
+    out.whole = false;
+    if (here == kSome && cut) cut->push_back(m);
+  }
+  return out;
+}
+
+// Which cells masks deny, by how many.
+class Carver {
+ public:
+  Carver(const std::vector<Masked>& masks, const VoxelGrid& grid) : masks_(masks), grid_(grid) {}
+
+  // Counts up to one more than `most` denials of a cell.
+  void carve(int most);
+  // How many denials, up to `most`, to put up with for the cells to show where the masks do; and
+  // whether they do with that many.
+  bool agree(int most, int* enough) const;
+  // VisualHull::occupied_, with so many denials.
+  std::vector<uint8_t> occupied(int denials) const;
+
+ private:
+  int least_denials(const Masked& mask, const Eigen::Vector2d& ideal, int most) const;
+
+  const std::vector<Masked>& masks_;
+  const VoxelGrid& grid_;
+  std::vector<Verdict> cells_;
+};
+
+void Carver::carve(int most) {
+  cells_.assign(grid_.size(), {uint8_t(most + 1), false});
+  std::vector<int> all(masks_.size());
+  std::iota(all.begin(), all.end(), 0);
+  // Blocks of cells first: most of space is empty, most of the rest deep inside.
+  constexpr int kBlock = 4;
+  const double half_diagonal = 0.87 * grid_.cell;  // half the square root of 3
+  const Eigen::Vector3i blocks = (grid_.count.array() + kBlock - 1) / kBlock;
+  parallel_for(blocks.prod(), 16, [&](int b) {
+    const Eigen::Vector3i first =
+        kBlock *
+        Eigen::Vector3i(b % blocks.x(), b / blocks.x() % blocks.y(), b / (blocks.x() * blocks.y()));
+    const auto center = [&](const Eigen::Vector3i& cell, double side) {
+      return Eigen::Vector3d(grid_.low +
+                             grid_.cell * (cell.cast<double>().array() + side / 2).matrix());
+    };
+    std::vector<int> cut;
+    const Verdict block =
+        verdict(masks_, center(first, kBlock), kBlock * half_diagonal, all, most, &cut);
+    if (block.denials > most) return;
+    const Eigen::Vector3i end = (first.array() + kBlock).min(grid_.count.array());
+    for (int k = first.z(); k < end.z(); ++k)
+      for (int j = first.y(); j < end.y(); ++j)
+        for (int i = first.x(); i < end.x(); ++i) {
+          Verdict v = block;
+          if (!cut.empty())
+            v = verdict(masks_, center({i, j, k}, 1), half_diagonal, cut, most - block.denials,
+                        nullptr);
+          v.denials += cut.empty() ? 0 : block.denials;
+          cells_[(size_t(k) * grid_.count.y() + j) * grid_.count.x() + i] = v;
+        }
+  });
+}
+
+// The fewest of a cell that an ideal pixel shows.
+int Carver::least_denials(const Masked& mask, const Eigen::Vector2d& ideal, int most) const {
+  const View& view = *mask.view;
+  const Eigen::Vector3d origin = view.center_in_world();
+  const Eigen::Vector3d direction =
+      (view.cam_from_world.rotation.transpose() * view.camera.ray(ideal)).normalized();
+  const Eigen::Vector3d half = 0.5 * grid_.cell * grid_.count.cast<double>();
+  const double middle = (grid_.low + half - origin).norm();
+  int least = most + 1;
+  for (double s = std::max(0.0, middle - half.norm()); s < middle + half.norm() && least > 0;
+       s += 0.5 * grid_.cell)
+    if (size_t at; grid_.find(origin + s * direction, &at))
+      least = std::min<int>(least, cells_[at].denials);
+  return least;
+}
+
+bool Carver::agree(int most, int* enough) const {
+  std::vector<std::vector<int>> count(masks_.size(), std::vector<int>(most + 2));
+  parallel_for(int(masks_.size()), 1, [&](int m) {
+    const Image<int>& sum = masks_[m].sum;
+    for (int k = 0; k < kRays * kRays; ++k) {
+      const Eigen::Vector2d pixel((k % kRays + 0.5) * (sum.width - 1) / kRays,
+                                  (k / kRays + 0.5) * (sum.height - 1) / kRays);
+      Eigen::Vector2d ideal;
+      if (share(sum, pixel.x(), pixel.y(), kWithin) == kAll &&
+          masks_[m].view->ideal_pixel(pixel, &ideal))
+        ++count[m][least_denials(masks_[m], ideal, most)];
+    }
+  });
+  double rays = 0, held = 0;
+  for (const std::vector<int>& c : count) rays = std::accumulate(c.begin(), c.end(), rays);
+  for (*enough = 0;; ++*enough) {
+    for (const std::vector<int>& c : count) held += c[*enough];
+    if (held >= kCovered * rays || *enough == most) return held >= kCovered * rays;
+  }
+}
+
+std::vector<uint8_t> Carver::occupied(int denials) const {
+  std::vector<uint8_t> out(cells_.size());
+  for (size_t i = 0; i < out.size(); ++i)
+    out[i] = cells_[i].denials > denials ? kNone : cells_[i].whole ? kAll : kSome;
+  return out;
+}
 
 }  // namespace
 
 VisualHull::VisualHull(const EdgeWorld& world, int cells) {
-  const auto mask_of = [&](size_t v) -> const Image<uint8_t>& {
-    const Image<uint8_t>& mask = world.maps[v].mask;
-    return mask.empty() && world.silhouettes ? (*world.silhouettes)[v] : mask;
-  };
-  std::vector<int> masked;
-  for (size_t v = 0; v < world.maps.size(); ++v)
-    if (!mask_of(v).empty() && !world.maps[v].edgels.empty()) masked.push_back(int(v));
-  if (masked.size() < 3 || world.bounds.isEmpty()) return;
-  std::vector<Image<int>> sums(masked.size());
-  parallel_for(int(masked.size()), 1, [&](int m) { sums[m] = integral(mask_of(masked[m])); });
-  low_ = world.bounds.min();
-  cell_ = world.bounds.sizes().maxCoeff() / cells;
-  const Eigen::Vector3d n = (world.bounds.sizes() / cell_).array().ceil();
-  nx_ = std::max(1, int(n.x())), ny_ = std::max(1, int(n.y())), nz_ = std::max(1, int(n.z()));
-  occupied_.assign(size_t(nx_) * ny_ * nz_, 0);
-  // `open`: views that cut what lies around here; `cut`, if there, those that cut this.
-  const auto in_all_masks = [&](const Eigen::Vector3d& p, double radius,
-                                const std::vector<int>& open, std::vector<int>* cut) {
-    Share least = kAll;
-    for (const int m : open) {
-      const View& v = world.views[masked[m]];
-      double z;
-      const Eigen::Vector2d q = v.project(p, &z);
-      if (!(z > 0)) continue;
-      const Share here = share(sums[m], v, q, radius * v.camera.fx / z);
-      if (here == kNone) return kNone;
-      if (here == kSome && cut) cut->push_back(m);
-      least = std::min(least, here);
-    }
-    return least;
-  };
-  std::vector<int> all(masked.size());
-  std::iota(all.begin(), all.end(), 0);
-  // Blocks of cells first: most of space is empty, most of the rest deep inside.
-  constexpr int kBlock = 4;
-  const double half_diagonal = 0.87;  // of a cell, half the square root of 3
-  const auto blocks = [](int cells) { return (cells + kBlock - 1) / kBlock; };
-  const int across = blocks(nx_), rows = blocks(ny_);
-  parallel_for(
-      blocks(nz_) * rows * across, 16, [&](int b) {
-        const int i0 = b % across * kBlock, j0 = b / across % rows * kBlock,
-                  k0 = b / (across * rows) * kBlock;
-        const Eigen::Vector3d middle =
-            low_ + cell_ * (Eigen::Vector3d(i0, j0, k0) + Eigen::Vector3d::Constant(kBlock / 2.0));
-        std::vector<int> cut;
-        const Share block = in_all_masks(middle, kBlock * half_diagonal * cell_, all, &cut);
-        if (block == kNone) return;
-        for (int k = k0; k < std::min(nz_, k0 + kBlock); ++k)
-          for (int j = j0; j < std::min(ny_, j0 + kBlock); ++j)
-            for (int i = i0; i < std::min(nx_, i0 + kBlock); ++i) {
-              const Eigen::Vector3d p = low_ + cell_ * Eigen::Vector3d(i + .5, j + .5, k + .5);
-              occupied_[(size_t(k) * ny_ + j) * nx_ + i] =
-                  block == kAll ? kAll : in_all_masks(p, half_diagonal * cell_, cut, nullptr);
-            }
-      });
+  const std::vector<Masked> masks = masked_views(world);
+  if (masks.size() < 3 || world.bounds.isEmpty()) return;
+  grid_.low = world.bounds.min();
+  grid_.cell = world.bounds.sizes().maxCoeff() / cells;
+  grid_.count = (world.bounds.sizes() / grid_.cell).array().ceil().cast<int>().max(1);
+  Carver carver(masks, grid_);
+  int most = 0, enough = 0;
+  carver.carve(most);
+  if (!carver.agree(most, &enough)) {  // something stands before the object
+    most = std::min(kMostDenials, int(masks.size()) / 4);
+    carver.carve(most);
+    carver.agree(most, &enough);
+  }
+  occupied_ = carver.occupied(enough);
+}
+
+bool VoxelGrid::find(const Eigen::Vector3d& p, size_t* index) const {
+  const Eigen::Vector3d q = (p - low) / cell;
+  if (!(q.minCoeff() >= 0) || q.x() >= count.x() || q.y() >= count.y() || q.z() >= count.z())
+    return false;
+  *index = (size_t(q.z()) * count.y() + size_t(q.y())) * count.x() + size_t(q.x());
+  return true;
 }
 
 uint8_t VisualHull::at(const Eigen::Vector3d& p) const {
-  const Eigen::Vector3d q = (p - low_) / cell_;
-  if (!(q.minCoeff() >= 0) || q.x() >= nx_ || q.y() >= ny_ || q.z() >= nz_) return kNone;
-  return occupied_[(size_t(q.z()) * ny_ + size_t(q.y())) * nx_ + size_t(q.x())];
+  size_t cell;
+  return grid_.find(p, &cell) ? occupied_[cell] : uint8_t(kNone);
 }
 
 bool VisualHull::surely_visible(const Eigen::Vector3d& point, const Eigen::Vector3d& camera) const {
@@ -122,15 +236,15 @@ bool VisualHull::surely_visible(const Eigen::Vector3d& point, const Eigen::Vecto
   const Eigen::Vector3d way = camera - point;
   const double length = way.norm();
   // Where the line of sight leaves the grid.
-  const Eigen::Array3d size = cell_ * Eigen::Array3d(nx_, ny_, nz_);
-  const Eigen::Array3d far = (way.array() > 0).select(low_.array() + size, low_.array());
+  const Eigen::Array3d size = grid_.cell * grid_.count.cast<double>().array();
+  const Eigen::Array3d far = (way.array() > 0).select(grid_.low.array() + size, grid_.low.array());
   double end = length;
   for (int k = 0; k < 3; ++k)
     if (way[k] != 0) end = std::min(end, std::max(0.0, (far[k] - point[k]) / way[k] * length));
   // Nearby cells may hold the point's own surface, but no more than its surface.
-  for (double s = 0; s < std::min(kSurroundings * cell_, end); s += 0.35 * cell_)
+  for (double s = 0; s < std::min(kSurroundings * grid_.cell, end); s += 0.35 * grid_.cell)
     if (at(point + way * (s / length)) == kAll) return false;
-  for (double s = kSurroundings * cell_; s < end; s += 0.7 * cell_)
+  for (double s = kSurroundings * grid_.cell; s < end; s += 0.7 * grid_.cell)
     if (at(point + way * (s / length)) != kNone) return false;
   return true;
 }
@@ -138,12 +252,12 @@ bool VisualHull::surely_visible(const Eigen::Vector3d& point, const Eigen::Vecto
 bool VisualHull::clip(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                       double around, double* s0, double* s1) const {
   if (empty()) return true;
-  const double step = 0.5 * cell_;
+  const double step = 0.5 * grid_.cell;
   double first = *s0, last = *s1;
   while (first <= last && at(origin + first * direction) == kNone) first += step;
   while (first <= last && at(origin + last * direction) == kNone) last -= step;
   if (first > last) return false;
-  *s0 = std::max(*s0, first - around * cell_), *s1 = std::min(*s1, last + around * cell_);
+  *s0 = std::max(*s0, first - around * grid_.cell), *s1 = std::min(*s1, last + around * grid_.cell);
   return true;
 }
 

@@ -11,8 +11,21 @@ struct EdgeWorld;
 
 namespace sketchsplat {
 
+/// Cells of a box in space.
+struct VoxelGrid {
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();
+  double cell = 0;  ///< side length, world units
+  Eigen::Vector3i count = Eigen::Vector3i::Zero();
+
+  size_t size() const { return size_t(count.x()) * count.y() * count.z(); }
+  /// Index of the cell that holds a point; false outside.
+  bool find(const Eigen::Vector3d& p, size_t* index) const;
+};
+
 /// The part of space that every mask holds: a voxel grid that contains the object and little more
-/// (Laurentini, PAMI 1994). A point whose line of sight meets no voxel on the way is seen for sure.
+/// (Laurentini, PAMI 1994). Where things before the object cut masks of it, the part that all but a
+/// few hold: as few as make it show in all that the masks hold. A point whose line of sight meets
+/// no voxel on the way is seen for sure.
 class VisualHull {
  public:
   VisualHull() = default;  ///< empty: nothing is sure
@@ -33,9 +46,7 @@ class VisualHull {
  private:
   uint8_t at(const Eigen::Vector3d& p) const;
 
-  Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
-  double cell_ = 0;
-  int nx_ = 0, ny_ = 0, nz_ = 0;
+  VoxelGrid grid_;
   /// Of a cell: 0 outside a mask, 1 across the edge of one, 2 inside all.
   std::vector<uint8_t> occupied_;
 };

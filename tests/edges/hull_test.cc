@@ -113,6 +113,29 @@ TEST(VisualHull, MasksAreLookedUpThroughTheLens) {
   EXPECT_LT(agree_without, 0.9 * n) << agree;
 }
 
+// A post before the cube in every sixth view, cut out of the mask there.
+TEST(VisualHull, ThingsBeforeTheObjectCarveNothingOfIt) {
+  EdgeWorld cut = cube_world(true);
+  for (size_t i = 0; i < cut.maps.size(); i += 6) {
+    Image<uint8_t>& mask = cut.maps[i].mask;
+    for (int y = 0; y < mask.height; ++y)
+      for (int x = 0; x < mask.width / 2; ++x) mask.at(x, y) = 0;
+  }
+  const VisualHull hull(cut, 64), whole(cube_world(true), 64);
+  for (const Polyline& e : cube_edges(Vector3d(0.2, 0.2, 0.2), 0.6))
+    for (const double t : {0.05, 0.5, 0.95}) {
+      const Vector3d p = e[0] + t * (e[1] - e[0]);
+      const Vector3d camera = kMiddle + 3 * (p - kMiddle).normalized();
+      double s0 = 0, s1 = 10, t0 = 0, t1 = 10;
+      ASSERT_TRUE(hull.clip(camera, (p - camera).normalized(), 0, &s0, &s1)) << p.transpose();
+      EXPECT_TRUE(hull.surely_visible(p, camera)) << p.transpose();
+      ASSERT_TRUE(whole.clip(camera, (p - camera).normalized(), 0, &t0, &t1));
+      EXPECT_NEAR(s0, t0, 4 * 0.6 / 64) << "nor does it grow";
+    }
+  double s0 = 0, s1 = 10;
+  EXPECT_FALSE(hull.clip({0.5, 0.5, 3.5}, Vector3d(1, 0, -1).normalized(), 0, &s0, &s1));
+}
+
 TEST(VisualHull, WithoutMasksNothingIsSure) {
   EXPECT_TRUE(cube_world(false).hull.empty());
   EXPECT_FALSE(cube_world(false).hull.surely_visible({0.5, 0.5, 0.8}, {0.5, 0.5, 3.5}));
