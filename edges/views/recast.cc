@@ -2,6 +2,7 @@
 #include "edges/views/recast.h"
 
 #include <array>
+#include <memory>
 #include <utility>
 
 #include "datasets/types/parallel.h"
@@ -58,6 +59,22 @@ EdgeWorld recast(EdgeWorld world, std::vector<View> views) {
   });
   world.views = std::move(views);
   return world;
+}
+
+EdgeWorld without_views(const EdgeWorld& world, const std::vector<char>& leave) {
+  EdgeWorld out = world;
+  out.views.clear(), out.maps.clear(), out.plane_normal.clear();
+  std::vector<Image<uint8_t>> silhouettes;
+  for (size_t v = 0; v < leave.size(); ++v) {
+    if (leave[v]) continue;
+    if (world.silhouettes) silhouettes.push_back((*world.silhouettes)[v]);
+    out.views.push_back(world.views[v]);
+    out.maps.push_back(world.maps[v]);
+    out.plane_normal.push_back(world.plane_normal[v]);
+  }
+  if (world.silhouettes)
+    out.silhouettes = std::make_shared<const std::vector<Image<uint8_t>>>(std::move(silhouettes));
+  return out;
 }
 
 EdgeWorld coarser(const EdgeWorld& world, int factor) {

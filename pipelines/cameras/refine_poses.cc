@@ -101,8 +101,9 @@ Misfit misfit(const Posed& posed, const StatedCameras& stated) {
   CameraPrior held;
   held.pose_px = kExactPx;
   // Poses that nothing contradicts do not take up what another focal length or lens explains.
-  out.shared = (out.poses ? evidence : camera_evidence(posed.sketch, o, posed.world, stated, held))
-                   .shared > kSure;
+  out.shared =
+      (out.poses ? evidence : camera_evidence(posed.sketch, o, posed.world, stated, held)).shared >
+      kSure;
   if (!out.shared) return out;
   out.pose_px = fit_cameras(posed.sketch, o, posed.world, stated, held, 3).after_px;
   return out;
@@ -192,18 +193,6 @@ EdgeWorld coarse_to_fine(const EdgeWorld& world, int factor, const StatedCameras
   return refreshed(recast(world, enlarged(posed.world.views, stated.views, factor)));
 }
 
-EdgeWorld without(const EdgeWorld& world, const std::vector<char>& leave) {
-  EdgeWorld out = world;
-  out.views.clear(), out.maps.clear(), out.plane_normal.clear();
-  for (size_t v = 0; v < leave.size(); ++v) {
-    if (leave[v]) continue;
-    out.views.push_back(world.views[v]);
-    out.maps.push_back(world.maps[v]);
-    out.plane_normal.push_back(world.plane_normal[v]);
-  }
-  return refreshed(std::move(out));
-}
-
 // What strokes explain if every view looks somewhere else, each to another side.
 double chance_share(const EdgeWorld& world, const ReconstructOptions& options) {
   std::vector<View> views = world.views;
@@ -250,7 +239,7 @@ bool leave_out(const Explained& shares, RunReport* report, Progress* progress, P
     if (leave[v]) names += (names.empty() ? "" : ", ") + posed->world.views[v].name;
   warn("left out, for their poses do not fit the other views: " + names, report, progress);
   report->counts.push_back({"views_left_out", double(count)});
-  posed->world = without(posed->world, leave);
+  posed->world = refreshed(without_views(posed->world, leave));
   return true;
 }
 
@@ -333,8 +322,7 @@ bool move_cameras(const StatedCameras& stated, const Misfit& off, double share,
   if (!moved) *posed = first;
   report->counts.push_back({"pose_offset_before_px", off.offset_px});
   report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
-  if (moved)
-    report->counts.push_back({"pose_scale_sigma", scale_sigma(*posed, stated, off)});
+  if (moved) report->counts.push_back({"pose_scale_sigma", scale_sigma(*posed, stated, off)});
   stage.result(moved ? "cameras moved" : "stated cameras fit as well");
   return moved;
 }
