@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "datasets/types/median.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -222,6 +224,17 @@ std::vector<Vector3d> borne_out(const std::vector<EdgePoint>& points, double foo
   return out;
 }
 
+// Height over the table from which on a point is none of its print, whose heights vary as those of
+// most points near the table do: at least a pixel, `most` at the most.
+double highest_print(const Plane& table, const std::vector<Vector3d>& points, double pixel,
+                     double most) {
+  constexpr double kSigmas = 5;
+  std::vector<double> heights;
+  for (const Vector3d& p : points)
+    if (table.absDistance(p) < most) heights.push_back(table.absDistance(p));
+  return std::clamp(kSigmas * normal_sigma(std::move(heights)), std::min(pixel, most), most);
+}
+
 Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points, double margin) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) {
@@ -290,7 +303,7 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   const int best = int(std::max_element(weight.begin(), weight.end()) - weight.begin());
   const std::vector<Vector2d> own = grown(places, group, best, footprint, options);
   region.table = table;
-  region.above = options.above_px * footprint;
+  region.above = highest_print(*table, points, footprint, options.above_px * footprint);
   region.outline = convex_hull(widened(own, options.reach_px * footprint));
   region.outline_on_table = convex_hull(widened(own, margin));
   RegionOptions near_by = options;
@@ -300,7 +313,7 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   std::vector<Vector3d> inside;
   for (const Vector3d& p : points) {
     const Vector2d place = region.frame * p;
-    if (!(table->signedDistance(p) > region.above) || !is_inside(region.outline, place)) continue;
+    if (!(table->signedDistance(p) > options.above_px * footprint) || !is_inside(region.outline, place)) continue;
     if (is_inside(sure, place)) region.edges.push_back(p);
     inside.push_back(p);
     inside.push_back(table->projection(p));  // it stands there, whether that is seen or not

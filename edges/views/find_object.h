@@ -14,7 +14,7 @@ struct RegionOptions {
   double line_px = 30;    ///< [px] along its tangent, within which others bear a point out
   double line_views = 6;  ///< views beyond min_views that these and the point have together
   double table_px = 2;    ///< [px] of points on the table
-  double above_px = 6;    ///< [px] over the table, from where on a point is no print on it
+  double above_px = 6;    ///< [px] over the table, from where on a point is no print on it, at most
   double gap_px = 24;     ///< [px] seen from above, that parts the object from other things,
   double gap = 0.12;      ///< in diameters of the object, if that is more: large things fall apart
   double margin_px = 4;   ///< [px] around the object's points, on the table

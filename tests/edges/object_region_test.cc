@@ -80,6 +80,22 @@ TEST(ObjectRegion, AnObjectOnATableIsToldFromWhatLiesAndStandsAroundIt) {
   }
 }
 
+// The foot of a part with a chamfer is hardly higher than the print around it.
+TEST(ObjectRegion, HowFlatPrintLiesTellsWhatStandsOnTheTable) {
+  for (const double scatter_px : {0.2, 2.0}) {
+    std::mt19937 rng(5);
+    std::normal_distribution<double> scatter(0, scatter_px * kPixel);
+    std::vector<EdgePoint> points = cube_on_a_table();
+    for (EdgePoint& p : points)
+      if (p.position.z() < kPixel) p.position.z() += scatter(rng);
+    const ObjectRegion r = find_object(points, cameras(), kMiddle, 1.2, kPixel, {});
+    ASSERT_TRUE(r.table);
+    const Vector3d foot(0.9 + 8 * kPixel, 0.5, 3 * kPixel);  // beyond what is seen higher up
+    EXPECT_EQ(r.contains(foot), scatter_px < 1) << scatter_px;
+    EXPECT_FALSE(r.contains({foot.x(), 0.5, 0})) << scatter_px;
+  }
+}
+
 TEST(ObjectRegion, TheRegionTurnsAndGrowsWithTheScene) {
   const std::vector<EdgePoint> points = cube_on_a_table();
   std::vector<EdgePoint> moved = points;
