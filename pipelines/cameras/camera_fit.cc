@@ -2,13 +2,13 @@
 #include "pipelines/cameras/camera_fit.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "pipelines/cameras/eliminate.h"
 #include "pipelines/cameras/halves.h"
 #include "pipelines/cameras/point_prior.h"
 #include "sketches/curve/curve.h"
@@ -22,11 +22,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kStroke = 12, kPose = CameraUnknowns::kPose, kShared = CameraUnknowns::kMostShared;
-using StrokeVector = Matrix<double, kStroke, 1>;
-using StrokeMatrix = Matrix<double, kStroke, kStroke>;
+constexpr int kPose = CameraUnknowns::kPose, kShared = CameraUnknowns::kMostShared;
 
-constexpr double kRank = 1e-7;        // of the largest eigenvalue: strokes slide along themselves
 constexpr double kLeastSigma = 0.05;  // [px] of an edgel, and of a stroke in a view
 constexpr double kBiweight = 4.685;   // standard deviations: 95 % efficient
 constexpr double kLeastRadius = 8;    // [px] of the object's image
@@ -82,11 +79,6 @@ class System {
     std::vector<ControlPoints> strokes;
     VectorXd cameras;
   };
-  struct Normal {  // of a stroke
-    StrokeMatrix inverse;
-    StrokeVector gradient;
-    MatrixXd cross;  // 12 x cameras
-  };
 
   void list_rows(const Observation& o, const EdgeWorld& world);
   void weigh();
@@ -115,7 +107,7 @@ class System {
   std::vector<std::vector<int>> of_view_;
   int offsets_ = 0;
   double scatter_ = 0, offset_sigma_ = 0, before_ = 0;
-  std::vector<Normal> normals_;
+  std::vector<StrokeNormal> normals_;
   MatrixXd hessian_;  // of the cameras alone, strokes eliminated
   VectorXd gradient_;
 };
@@ -247,11 +239,11 @@ void System::assemble(const std::vector<Linear>& rows, double damping, int half)
   const int n = int(kinds_.size()), size = cameras_.size();
   normals_.resize(n);
   parallel_for(n, 1, [&](int s) {
-    Normal& normal = normals_[s];
+    StrokeNormal& normal = normals_[s];
     StrokeMatrix A = StrokeMatrix::Zero();
     normal.gradient.setZero();
-    normal.cross = MatrixXd::Zero(kStroke, size);
-    normal.inverse.setZero();
+    normal.cross = MatrixXd::Zero(kStrokeUnknowns, size);
+    normal.root.setZero();
     if (half >= 0 && s % 2 != half) return;
     for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
       const Linear& r = rows[i];
@@ -264,13 +256,7 @@ void System::assemble(const std::vector<Linear>& rows, double damping, int half)
       normal.cross.middleCols(cameras_.shared_column(camera), shared).noalias() +=
           j * r.shared.head(shared).transpose();
     }
-    if (!(A.trace() > 0) || !A.allFinite()) return;
-    const Eigen::SelfAdjointEigenSolver<StrokeMatrix> es(A);
-    const double largest = es.eigenvalues()[kStroke - 1];
-    for (int k = 0; k < kStroke; ++k)
-      if (es.eigenvalues()[k] > kRank * largest)
-        normal.inverse += es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() /
-                          (es.eigenvalues()[k] + damping * largest);
+    normal.root = root_of_inverse(A, damping);
   });
   hessian_ = prior_.information;
   gradient_ = prior_.gradient + prior_.information * now_.cameras;
@@ -296,11 +282,7 @@ void System::assemble(const std::vector<Linear>& rows, double damping, int half)
     hessian_.block(c, c, shared, shared) += both.topLeftCorner(shared, shared);
   }
   hessian_.diagonal() *= 1 + damping;
-  for (const Normal& normal : normals_) {
-    const MatrixXd solved = normal.inverse * normal.cross;
-    hessian_.noalias() -= normal.cross.transpose() * solved;
-    gradient_.noalias() -= solved.transpose() * normal.gradient;
-  }
+  eliminate(normals_, &hessian_, &gradient_);
 }
 
 System::State System::step() const {
@@ -308,8 +290,7 @@ System::State System::step() const {
   const VectorXd move = -hessian_.ldlt().solve(gradient_);
   next.cameras += move;
   for (size_t s = 0; s < next.strokes.size(); ++s) {
-    const Normal& normal = normals_[s];
-    const StrokeVector by = -normal.inverse * (normal.gradient + normal.cross * move);
+    const StrokeVector by = normals_[s].step(move);
     ControlPoints& c = next.strokes[s];
     for (int k = 0; k < c.count; ++k) c.p[k] += by.segment<3>(3 * k);
   }
@@ -342,7 +323,8 @@ double System::scale_sigma() const {
   }
   VectorXd by_camera = VectorXd::Zero(cameras_.size());
   for (size_t s = 0; s < growth.size(); ++s)
-    by_camera -= normals_[s].cross.transpose() * (normals_[s].inverse * growth[s]) / spread;
+    by_camera -= normals_[s].cross.transpose() *
+                 (normals_[s].root.transpose() * (normals_[s].root * growth[s])) / spread;
   const double variance = by_camera.dot(hessian_.ldlt().solve(by_camera));
   return variance > 0 ? std::sqrt(variance) : 0;
 }
