@@ -21,7 +21,10 @@ constexpr double kMatchPx = 1.5;  // largest distance of an edgel that supports 
 constexpr double kInlierPx = 1;   // the same after the point was refined
 // Cells of the hull about what it holds of a ray: silhouettes are coarser than masks.
 constexpr double kAroundMasks = 2.5, kAroundSilhouettes = 8;
-constexpr double kAngleDeg = 12;  // largest angle of its plane to the tangent
+constexpr double kAngleDeg = 12;   // largest angle of its plane to the tangent
+constexpr double kFollowed = 0.7;  // of the views of one point that see the next on its edge
+constexpr int kManyFailed = 3, kMostLeft = 3;  // seeds in a row
+constexpr double kLeastSine = 0.1;  // of a line of sight and the edge along which one goes on
 
 using Matrix34f = Eigen::Matrix<float, 3, 4>;
 
@@ -100,8 +103,12 @@ class Sweeper {
     parallel_for(int(far_.size()), 1, [&](int v) { far_[v] = FarCells(world.maps[v]); });
   }
 
+  bool is_sure(const EdgePoint& point) const { return point.views >= 2 * options_.min_views; }
   // The best point on the ray of an edgel; false if too few views agree. Matches: after refinement.
   bool lift(int view, int index, EdgePoint* point, std::vector<Match>* matches) const;
+  // The point of an edgel on the edge that goes on from a neighbour's; false if it does not.
+  bool follow(const EdgePoint& from, int view, int index, EdgePoint* point,
+              std::vector<Match>* matches) const;
 
  private:
   struct Ray {
@@ -301,19 +308,69 @@ bool Sweeper::lift(int view, int index, EdgePoint* point, std::vector<Match>* ma
   return refine(view, index, ray.center + s * ray.direction, t, point, matches);
 }
 
+bool Sweeper::follow(const EdgePoint& from, int view, int index, EdgePoint* point,
+                     std::vector<Match>* matches) const {
+  const View& v = world_.views[view];
+  const Edgel& e = world_.maps[view].edgels[index];
+  const Eigen::Vector3d ray =
+      (v.cam_from_world.rotation.transpose() * v.camera.ray({e.x, e.y})).normalized();
+  // Where the line along the edge is nearest to the ray.
+  const Eigen::Vector3d to = from.position - center_[view];
+  const double along = ray.dot(from.tangent), sine2 = 1 - along * along;
+  if (sine2 < kLeastSine * kLeastSine) return false;
+  const double s = (to.dot(ray) - along * to.dot(from.tangent)) / sine2;
+  return refine(view, index, center_[view] + s * ray, from.tangent, point, matches) &&
+         point->views >= kFollowed * from.views;
+}
+
+// Edgels that are lifted, chain after chain.
+struct Seeds {
+  std::vector<int> edgel;
+  std::vector<int> first = {0};  // of chain c: first[c] .. first[c + 1] - 1
+};
+
 // Every stride-th edgel of the chains that nothing explains yet.
-std::vector<int> pick(const EdgelMap& map, const std::vector<char>& explained, double stride) {
-  std::vector<int> out;
+Seeds pick(const EdgelMap& map, const std::vector<char>& explained, double stride) {
+  Seeds out;
   for (int c = 0; c < map.num_chains(); ++c) {
     double since = stride / 2;
     for (int i = map.chain[c]; i < map.chain[c + 1]; ++i) {
       since += 1;
       if (explained[i] || since < stride) continue;
-      out.push_back(i);
+      out.edgel.push_back(i);
       since = 0;
     }
+    out.first.push_back(int(out.edgel.size()));
   }
   return out;
+}
+
+struct Lifted {
+  EdgePoint point;
+  std::vector<Match> matches;  // none: it is not
+};
+
+// The edgels of a chain: from one that was lifted to the next, as far as the edge goes on. Where
+// many in a row are not, fewer are tried.
+void lift_chain(const Sweeper& sweeper, int view, const int* seeds, int count, Lifted* out) {
+  const auto follow = [&](int from, int k) {
+    if (!sweeper.is_sure(out[from].point)) return false;  // accidents go on as accidents
+    if (!sweeper.follow(out[from].point, view, seeds[k], &out[k].point, &out[k].matches))
+      out[k].matches.clear();
+    return !out[k].matches.empty();
+  };
+  int failed = 0;
+  for (int k = 0; k < count; ++k) {
+    if (k > 0 && !out[k - 1].matches.empty() && follow(k - 1, k)) continue;
+    if (!sweeper.lift(view, seeds[k], &out[k].point, &out[k].matches)) {
+      out[k].matches.clear();
+      k += std::min(kMostLeft, ++failed / kManyFailed);
+      continue;
+    }
+    failed = 0;
+    for (int back = k - 1; back >= 0 && out[back].matches.empty() && follow(back + 1, back);)
+      --back;
+  }
 }
 
 }  // namespace
@@ -327,17 +384,18 @@ std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& opt
   for (int i = 0; i < n; ++i) explained[i].assign(world.maps[i].edgels.size(), 0);
   const int margin = int(options.stride_px);
   for (int view = 0; view < n; ++view) {
-    const std::vector<int> seeds = pick(world.maps[view], explained[view], options.stride_px);
-    std::vector<EdgePoint> lifted(seeds.size());
-    std::vector<std::vector<Match>> matches(seeds.size());
-    parallel_for(int(seeds.size()), 4, [&](int k) {
-      if (!sweeper.lift(view, seeds[k], &lifted[k], &matches[k])) matches[k].clear();
+    const Seeds seeds = pick(world.maps[view], explained[view], options.stride_px);
+    std::vector<Lifted> lifted(seeds.edgel.size());
+    parallel_for(int(seeds.first.size()) - 1, 1, [&](int c) {
+      const int first = seeds.first[c];
+      lift_chain(sweeper, view, seeds.edgel.data() + first, seeds.first[c + 1] - first,
+                 lifted.data() + first);
     });
-    for (size_t k = 0; k < seeds.size(); ++k) {
-      if (matches[k].empty()) continue;
-      if (world.object.contains(lifted[k].position)) points.push_back(lifted[k]);
-      if (lifted[k].views < 2 * options.min_views) continue;
-      for (const Match& m : matches[k]) {
+    for (const Lifted& l : lifted) {
+      if (l.matches.empty()) continue;
+      if (world.object.contains(l.point.position)) points.push_back(l.point);
+      if (!sweeper.is_sure(l.point)) continue;
+      for (const Match& m : l.matches) {
         const int size = int(explained[m.view].size());
         for (int i = std::max(0, m.edgel - margin); i <= std::min(size - 1, m.edgel + margin); ++i)
           explained[m.view][i] = 1;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
+
 #include "edges/image/detect.h"
 #include "edges/views/link.h"
 #include "edges/views/match.h"
@@ -65,6 +67,26 @@ TEST(Lift, TangentsFollowACircle) {
     const Eigen::Vector3d radius = (p.position - kMiddle).normalized();
     EXPECT_NEAR(p.tangent.norm(), 1, 1e-9);
     EXPECT_LT(std::abs(p.tangent.dot(radius)), 0.1);
+  }
+}
+
+// Of two parallel edges three pixels apart, points go on along their own.
+TEST(Lift, NeighboursOnAChainLieOnTheSameEdge) {
+  std::vector<Polyline> curves;
+  const double pixel = 3.0 / 500;
+  for (const double x : {0.3, 0.3 + 3 * pixel, 0.3 + 6 * pixel})
+    curves.push_back({{x, 0.2, 0.5}, {x, 0.8, 0.5}});
+  const EdgeWorld w = ideal_world(ring_of_views(20, kMiddle, 3), curves);
+  const std::vector<EdgePoint> points = lift_edges(w, {});
+  for (const Polyline& c : curves) {
+    std::vector<double> along;
+    for (const EdgePoint& p : points)
+      if (distance_to({c}, p.position) < 0.3 * w.footprint) along.push_back(p.position.y());
+    std::sort(along.begin(), along.end());
+    ASSERT_GE(along.size(), 20u);
+    EXPECT_LT(along.front(), 0.2 + 8 * pixel);
+    EXPECT_GT(along.back(), 0.8 - 8 * pixel);
+    for (size_t i = 1; i < along.size(); ++i) EXPECT_LT(along[i] - along[i - 1], 8 * pixel);
   }
 }
 
