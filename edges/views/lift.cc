@@ -21,9 +21,8 @@ constexpr double kMatchPx = 1.5;  // largest distance of an edgel that supports 
 constexpr double kInlierPx = 1;   // the same after the point was refined
 // Cells of the hull about what it holds of a ray: silhouettes are coarser than masks.
 constexpr double kAroundMasks = 2.5, kAroundSilhouettes = 8;
-constexpr double kAngleDeg = 12;   // largest angle of its plane to the tangent
-constexpr double kFollowed = 0.7;  // of the views of one point that see the next on its edge
-constexpr int kManyFailed = 3, kMostLeft = 3;  // seeds in a row
+constexpr double kAngleDeg = 12;    // largest angle of its plane to the tangent
+constexpr double kFollowed = 0.8;   // of the views of one point that see the next on its edge
 constexpr double kLeastSine = 0.1;  // of a line of sight and the edge along which one goes on
 
 using Matrix34f = Eigen::Matrix<float, 3, 4>;
@@ -350,27 +349,19 @@ struct Lifted {
   std::vector<Match> matches;  // none: it is not
 };
 
-// The edgels of a chain: from one that was lifted to the next, as far as the edge goes on. Where
-// many in a row are not, fewer are tried.
+// The edgels of a chain: each by itself, and then, to both sides, where the edge of a neighbour
+// that many views see goes on, if more views agree there.
 void lift_chain(const Sweeper& sweeper, int view, const int* seeds, int count, Lifted* out) {
+  for (int k = 0; k < count; ++k)
+    if (!sweeper.lift(view, seeds[k], &out[k].point, &out[k].matches)) out[k].matches.clear();
   const auto follow = [&](int from, int k) {
-    if (!sweeper.is_sure(out[from].point)) return false;  // accidents go on as accidents
-    if (!sweeper.follow(out[from].point, view, seeds[k], &out[k].point, &out[k].matches))
-      out[k].matches.clear();
-    return !out[k].matches.empty();
+    if (out[from].matches.empty() || !sweeper.is_sure(out[from].point)) return;
+    Lifted l;
+    if (!sweeper.follow(out[from].point, view, seeds[k], &l.point, &l.matches)) return;
+    if (out[k].matches.empty() || l.point.views > out[k].point.views) out[k] = std::move(l);
   };
-  int failed = 0;
-  for (int k = 0; k < count; ++k) {
-    if (k > 0 && !out[k - 1].matches.empty() && follow(k - 1, k)) continue;
-    if (!sweeper.lift(view, seeds[k], &out[k].point, &out[k].matches)) {
-      out[k].matches.clear();
-      k += std::min(kMostLeft, ++failed / kManyFailed);
-      continue;
-    }
-    failed = 0;
-    for (int back = k - 1; back >= 0 && out[back].matches.empty() && follow(back + 1, back);)
-      --back;
-  }
+  for (int k = 1; k < count; ++k) follow(k - 1, k);
+  for (int k = count - 2; k >= 0; --k) follow(k + 1, k);
 }
 
 }  // namespace

@@ -63,10 +63,10 @@ struct LiftOptions {
 };
 
 /// Space sweep: every edgel (every stride_px of a chain) is tried at all depths inside the bounds;
-/// the depth and tangent on which most other views agree is kept and refined; from points that many
-/// views see, neighbours on the chain go on along the edge instead. Edgels that a good
-/// point already explains are not lifted again, points outside of the object are left out. Same
-/// result for any number of threads.
+/// the depth and tangent on which most other views agree is kept and refined. Where a neighbour on
+/// the chain lies on an edge that many views see, the place where that goes on is tried, too.
+/// Edgels that a good point already explains are not lifted again, points outside of the object
+/// are left out. Same result for any number of threads.
 std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& options);
 
 }  // namespace sketchsplat

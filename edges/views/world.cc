@@ -115,9 +115,10 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
     const double z = (v.cam_from_world * middle).z();
     if (z > 0) reach = std::max(reach, z * half_field(v));
   }
-  // Masks hold the object as a whole in nearly all views; without, views may be details of it.
+  // Masks hold the object as a whole but where other things stand before it; without, views may be
+  // details of it.
   const bool masked = world.has_masks();
-  const double most = masked ? 0.05 : 0.75;
+  const double most = masked ? 0.1 : 0.75;
   if (!masked) reach *= kBeyondField;
   Eigen::AlignedBox3d cube(middle - Eigen::Vector3d::Constant(reach),
                            middle + Eigen::Vector3d::Constant(reach));
