@@ -313,7 +313,8 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   std::vector<Vector3d> inside;
   for (const Vector3d& p : points) {
     const Vector2d place = region.frame * p;
-    if (!(table->signedDistance(p) > options.above_px * footprint) || !is_inside(region.outline, place)) continue;
+    const bool stands = table->signedDistance(p) > options.above_px * footprint;
+    if (!stands || !is_inside(region.outline, place)) continue;
     if (is_inside(sure, place)) region.edges.push_back(p);
     inside.push_back(p);
     inside.push_back(table->projection(p));  // it stands there, whether that is seen or not

@@ -60,32 +60,49 @@ constexpr int kWithin = 2;             // [px] of the mask all around such a ray
 struct Masked {
   const View* view;
   Image<int> sum;
+  bool spanned;  // edges reach as far as the mask: the grid holds all that it shows
 };
+
+bool spans(const std::vector<Edgel>& edgels, const Image<int>& sum) {
+  constexpr double kReach = 0.9;  // of the mask's width and height
+  Eigen::AlignedBox2f box;
+  for (const Edgel& e : edgels) box.extend(Eigen::Vector2f(e.x, e.y));
+  const int w = sum.width - 1, h = sum.height - 1;
+  int width = 0, height = 0;
+  for (int x = 0; x < w; ++x) width += sum.at(x + 1, h) > sum.at(x, h);
+  for (int y = 0; y < h; ++y) height += sum.at(w, y + 1) > sum.at(w, y);
+  return box.sizes().x() >= kReach * width && box.sizes().y() >= kReach * height;
+}
 
 std::vector<Masked> masked_views(const EdgeWorld& world) {
   std::vector<const Image<uint8_t>*> masks;
+  std::vector<const std::vector<Edgel>*> edgels;
   std::vector<Masked> out;
   for (size_t v = 0; v < world.maps.size(); ++v) {
     const Image<uint8_t>& own = world.maps[v].mask;
     const Image<uint8_t>& mask = own.empty() && world.silhouettes ? (*world.silhouettes)[v] : own;
     if (mask.empty() || world.maps[v].edgels.empty()) continue;
     masks.push_back(&mask);
-    out.push_back({&world.views[v], {}});
+    edgels.push_back(&world.maps[v].edgels);
+    out.push_back({&world.views[v], {}, false});
   }
-  parallel_for(int(out.size()), 1, [&](int m) { out[m].sum = integral(*masks[m]); });
+  parallel_for(int(out.size()), 1, [&](int m) {
+    out[m].sum = integral(*masks[m]);
+    out[m].spanned = spans(*edgels[m], out[m].sum);
+  });
   return out;
 }
 
 // What masks say of a part of space: how many of the views see none of it in theirs, counted up to
-// one more than `most`, and whether all others see it in theirs as a whole. Views outside of `open`
+// one more than `most`, and whether all views see it in theirs as a whole. Views outside of `open`
 // are known to; `cut` gets those that see its edge.
-struct Verdict {
+struct CellState {
   uint8_t denials = 0;
   bool whole = true;
 };
-Verdict verdict(const std::vector<Masked>& masks, const Eigen::Vector3d& p, double radius,
-                const std::vector<int>& open, int most, std::vector<int>* cut) {
-  Verdict out;
+CellState state_of(const std::vector<Masked>& masks, const Eigen::Vector3d& p, double radius,
+                   const std::vector<int>& open, int most, std::vector<int>* cut) {
+  CellState out;
   for (const int m : open) {
     const View& v = *masks[m].view;
     double z;
@@ -118,7 +135,7 @@ class Carver {
 
   const std::vector<Masked>& masks_;
   const VoxelGrid& grid_;
-  std::vector<Verdict> cells_;
+  std::vector<CellState> cells_;
 };
 
 void Carver::carve(int most) {
@@ -138,17 +155,17 @@ void Carver::carve(int most) {
                              grid_.cell * (cell.cast<double>().array() + side / 2).matrix());
     };
     std::vector<int> cut;
-    const Verdict block =
-        verdict(masks_, center(first, kBlock), kBlock * half_diagonal, all, most, &cut);
+    const CellState block =
+        state_of(masks_, center(first, kBlock), kBlock * half_diagonal, all, most, &cut);
     if (block.denials > most) return;
     const Eigen::Vector3i end = (first.array() + kBlock).min(grid_.count.array());
     for (int k = first.z(); k < end.z(); ++k)
       for (int j = first.y(); j < end.y(); ++j)
         for (int i = first.x(); i < end.x(); ++i) {
-          Verdict v = block;
+          CellState v = block;
           if (!cut.empty())
-            v = verdict(masks_, center({i, j, k}, 1), half_diagonal, cut, most - block.denials,
-                        nullptr);
+            v = state_of(masks_, center({i, j, k}, 1), half_diagonal, cut, most - block.denials,
+                         nullptr);
           v.denials += cut.empty() ? 0 : block.denials;
           cells_[(size_t(k) * grid_.count.y() + j) * grid_.count.x() + i] = v;
         }
@@ -175,7 +192,7 @@ bool Carver::agree(int most, int* enough) const {
   std::vector<std::vector<int>> count(masks_.size(), std::vector<int>(most + 2));
   parallel_for(int(masks_.size()), 1, [&](int m) {
     const Image<int>& sum = masks_[m].sum;
-    for (int k = 0; k < kRays * kRays; ++k) {
+    for (int k = 0; masks_[m].spanned && k < kRays * kRays; ++k) {
       const Eigen::Vector2d pixel((k % kRays + 0.5) * (sum.width - 1) / kRays,
                                   (k / kRays + 0.5) * (sum.height - 1) / kRays);
       Eigen::Vector2d ideal;
