@@ -351,9 +351,11 @@ struct Lifted {
 
 // The edgels of a chain: each by itself, and then, to both sides, where the edge of a neighbour
 // that many views see goes on, if more views agree there.
-void lift_chain(const Sweeper& sweeper, int view, const int* seeds, int count, Lifted* out) {
+void lift_chain(const Sweeper& sweeper, int view, bool along, const int* seeds, int count,
+                Lifted* out) {
   for (int k = 0; k < count; ++k)
     if (!sweeper.lift(view, seeds[k], &out[k].point, &out[k].matches)) out[k].matches.clear();
+  if (!along) return;
   const auto follow = [&](int from, int k) {
     if (out[from].matches.empty() || !sweeper.is_sure(out[from].point)) return;
     Lifted l;
@@ -379,8 +381,8 @@ std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& opt
     std::vector<Lifted> lifted(seeds.edgel.size());
     parallel_for(int(seeds.first.size()) - 1, 1, [&](int c) {
       const int first = seeds.first[c];
-      lift_chain(sweeper, view, seeds.edgel.data() + first, seeds.first[c + 1] - first,
-                 lifted.data() + first);
+      lift_chain(sweeper, view, options.follow, seeds.edgel.data() + first,
+                 seeds.first[c + 1] - first, lifted.data() + first);
     });
     for (const Lifted& l : lifted) {
       if (l.matches.empty()) continue;

@@ -60,6 +60,9 @@ struct LiftOptions {
   double stride_px = 3.0;   ///< [px] along a chain between edgels that are lifted
   int sweep_views = 24;     ///< views that score the depths of an edgel
   int min_views = 4;        ///< views that must agree
+  /// Edges of neighbours are tried, too: more points where few views see an edge, and of edges that
+  /// run close to one another more that lie on the one more views see.
+  bool follow = true;
 };
 
 /// Space sweep: every edgel (every stride_px of a chain) is tried at all depths inside the bounds;

@@ -119,8 +119,10 @@ class SurfelDetector : public Detector {
       stage.step();
     });
     alpha_.clear();
+    LiftOptions options;
+    options.follow = false;
     const CurvePoints tracks =
-        track_points(lift_edges(world_, {}), world_.footprint, kFewestPoints);
+        track_points(lift_edges(world_, options), world_.footprint, kFewestPoints);
     const std::vector<TrackSightings> sightings = track_sightings(world_, tracks, kEvery);
     const std::vector<std::vector<EdgelSupport>> support = support_of(sightings);
     const std::vector<EdgeKind> kinds = judge_tracks(tracks, sightings, support, kOffPx);
@@ -152,6 +154,7 @@ class SurfelDetector : public Detector {
     if (options_.surfels.hull.sights == 0) return {};
     LiftOptions options;
     options.stride_px = 6, options.sweep_views = 16, options.min_views = 5;
+    options.follow = false;  // edges that few views see tell most
     const CurvePoints tracks =
         track_points(lift_edges(world_, options), world_.footprint, SureEdgeOptions().run);
     return sure_edges(world_, tracks);
