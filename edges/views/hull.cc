@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 
 #include "datasets/types/parallel.h"
 #include "edges/views/lift.h"
@@ -63,15 +64,13 @@ struct Masked {
   bool spanned;  // edges reach as far as the mask: the grid holds all that it shows
 };
 
-bool spans(const std::vector<Edgel>& edgels, const Image<int>& sum) {
+bool spans(const std::vector<Edgel>& edgels, const Image<uint8_t>& mask) {
   constexpr double kReach = 0.9;  // of the mask's width and height
   Eigen::AlignedBox2f box;
   for (const Edgel& e : edgels) box.extend(Eigen::Vector2f(e.x, e.y));
-  const int w = sum.width - 1, h = sum.height - 1;
-  int width = 0, height = 0;
-  for (int x = 0; x < w; ++x) width += sum.at(x + 1, h) > sum.at(x, h);
-  for (int y = 0; y < h; ++y) height += sum.at(w, y + 1) > sum.at(w, y);
-  return box.sizes().x() >= kReach * width && box.sizes().y() >= kReach * height;
+  const cv::Rect all =
+      cv::boundingRect(cv::Mat1b(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data())));
+  return box.sizes().x() >= kReach * all.width && box.sizes().y() >= kReach * all.height;
 }
 
 std::vector<Masked> masked_views(const EdgeWorld& world) {
@@ -88,7 +87,7 @@ std::vector<Masked> masked_views(const EdgeWorld& world) {
   }
   parallel_for(int(out.size()), 1, [&](int m) {
     out[m].sum = integral(*masks[m]);
-    out[m].spanned = spans(*edgels[m], out[m].sum);
+    out[m].spanned = spans(*edgels[m], *masks[m]);
   });
   return out;
 }
