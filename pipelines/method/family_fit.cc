@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "datasets/types/parallel.h"
@@ -16,18 +17,19 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kDirections = 8;      // of edgels, over 180 deg
-constexpr double kWidest = 0.1;     // [extents] reach of the first steps
-constexpr double kNear = 4;         // [px] the edgels' own look-up reaches as far
-constexpr double kNearest = 1.5;    // [px] reach of the last steps
-constexpr int kSteps = 3;           // per reach
-constexpr double kCell = 2;         // [px] of the look-up
+constexpr int kDirections = 8;    // of edgels, over 180 deg
+constexpr double kWidest = 0.1;   // [extents] reach of the first steps
+constexpr double kNear = 4;       // [px] the edgels' own look-up reaches as far
+constexpr double kNearest = 1.5;  // [px] reach of the last steps
+constexpr int kSteps = 3;         // per reach
+constexpr double kCell = 4;       // [px] of the look-up, which is for reaches beyond kNear
 constexpr double kFarPlaces = 3;  // on a stroke in a view whose errors are their own: model errors
 constexpr double kNearPlaces = 12;  // the same at the end: the edgels' errors
 constexpr double kNearSigma = 0.4;  // [px] of an edgel at the end
 constexpr int kBlock = 8;           // edgels in a row that belong to one stroke
 constexpr int kModes = 2;           // along which starts are tried
 constexpr double kFar = 1.3;        // standard deviations that these are moved by
+constexpr double kHopeless = 0.5;   // of the edgels within kNear, at least, after the first steps
 
 int direction_of(double nx, double ny) {
   const double turn = std::atan2(ny, nx) / M_PI + 1;  // the sign of a normal means nothing
@@ -55,13 +57,14 @@ class FamilyFit::Lookup {
   Lookup(const EdgelMap& map, double reach_px) : map_(&map) {
     width_ = int(map.width / kCell) + 1, height_ = int(map.height / kCell) + 1;
     for (auto& cells : nearest_) cells.assign(size_t(width_) * height_, -1);
+    reach2_ = (reach_px + kCell) * (reach_px + kCell);
     for (int e = 0; e < int(map.edgels.size()); ++e) {
       const Edgel& edgel = map.edgels[e];
       const int u = std::clamp(int(edgel.x / kCell), 0, width_ - 1);
       const int v = std::clamp(int(edgel.y / kCell), 0, height_ - 1);
-      offer(&nearest_[direction_of(edgel.nx, edgel.ny)], u, v, e, reach_px);
+      offer(&nearest_[direction_of(edgel.nx, edgel.ny)], u, v, e);
     }
-    for (auto& cells : nearest_) spread(&cells, reach_px);
+    for (auto& cells : nearest_) spread(&cells);
   }
 
   // Of the direction's bin and the one beside it that is nearer. `normal`: of the projected curve.
@@ -83,24 +86,25 @@ class FamilyFit::Lookup {
   }
 
  private:
-  void offer(std::vector<int>* cells, int u, int v, int edgel, double reach_px) const {
-    if (edgel < 0) return;
-    const double x = (u + 0.5) * kCell, y = (v + 0.5) * kCell;
-    const auto distance = [&](int e) {
-      return std::hypot(map_->edgels[e].x - x, map_->edgels[e].y - y);
-    };
+  void offer(std::vector<int>* cells, int u, int v, int edgel) const {
     int& best = (*cells)[size_t(v) * width_ + u];
-    const double d = distance(edgel);
-    if (d < reach_px + kCell && (best < 0 || d < distance(best))) best = edgel;
+    if (edgel < 0 || edgel == best) return;
+    const auto distance2 = [&](int e) {
+      const double x = map_->edgels[e].x - (u + 0.5) * kCell;
+      const double y = map_->edgels[e].y - (v + 0.5) * kCell;
+      return x * x + y * y;
+    };
+    const double d = distance2(edgel);
+    if (d < reach2_ && (best < 0 || d < distance2(best))) best = edgel;
   }
 
   // Nearest edgels spread to the neighbours, down and up (Danielsson 1980, "Euclidean distance
   // mapping").
-  void spread(std::vector<int>* cells, double reach_px) const {
+  void spread(std::vector<int>* cells) const {
     const auto from = [&](int u, int v, int du, int dv) {
       const int a = u + du, b = v + dv;
       if (a < 0 || b < 0 || a >= width_ || b >= height_) return;
-      offer(cells, u, v, (*cells)[size_t(b) * width_ + a], reach_px);
+      offer(cells, u, v, (*cells)[size_t(b) * width_ + a]);
     };
     for (int v = 0; v < height_; ++v) {
       for (int u = 0; u < width_; ++u)
@@ -116,6 +120,7 @@ class FamilyFit::Lookup {
 
   const EdgelMap* map_;
   int width_, height_;
+  double reach2_ = 0;  // [px^2]
   std::array<std::vector<int>, kDirections> nearest_;
 };
 
@@ -125,8 +130,10 @@ FamilyFit::FamilyFit(const Family& family, const EdgeWorld& world, int most_view
   for (int k = 0; k < count; ++k) views_.push_back(int((long(k) * all) / count));
   precision_ = family.covariance.inverse();
   widest_px_ = std::max(2 * kNear, kWidest * world.bounds.sizes().maxCoeff() / world.footprint);
-  lookups_.reserve(views_.size());
-  for (const int v : views_) lookups_.emplace_back(world.maps[v], widest_px_);
+  lookups_.resize(views_.size());
+  parallel_for(int(views_.size()), 1, [&](int k) {
+    lookups_[k] = std::make_unique<Lookup>(world.maps[views_[k]], widest_px_);
+  });
 }
 
 FamilyFit::~FamilyFit() = default;
@@ -152,14 +159,13 @@ std::vector<SampleMatch> FamilyFit::far_matches(const CurvePoints& samples, doub
         const Eigen::Vector2d along = view.camera.project_jacobian(q) *
                                       (view.cam_from_world.rotation * samples.tangent.col(i));
         if (!(along.squaredNorm() > 0)) continue;
-        const int e = lookups_[k].nearest(p, {-along.y(), along.x()});
+        const int e = lookups_[k]->nearest(p, {-along.y(), along.x()});
         if (e < 0) continue;
         const double far = std::hypot(p.x() - edgels[e].x, p.y() - edgels[e].y) / reach_px;
         if (!(far < 1)) continue;
         const double d =
             (p.x() - edgels[e].x) * edgels[e].nx + (p.y() - edgels[e].y) * edgels[e].ny;
-        by_view[k].push_back(
-            {i, views_[k], e, float(d), float((1 - far * far) * (1 - far * far))});
+        by_view[k].push_back({i, views_[k], e, float(d), float((1 - far * far) * (1 - far * far))});
         curve_of.push_back(int(c));
         auto& own = owner[e / kBlock];
         own = std::min(own, {float(far), int(c)});
@@ -310,23 +316,33 @@ Sibling FamilyFit::step(const Sibling& now, double reach_px) const {
 Sibling FamilyFit::fit(Sibling sibling) const {
   for (double reach = widest_px_; reach > kNear; reach /= 1.6)
     for (int k = 0; k < kSteps; ++k) sibling = step(sibling, reach);
+  if (explained(sketch(sibling), kNear) < kHopeless) return sibling;
   for (const double reach : {kNear, 0.5 * (kNear + kNearest), kNearest, kNearest})
     for (int k = 0; k < kSteps; ++k) sibling = step(sibling, reach);
   return sibling;
 }
 
-double FamilyFit::explained(const Sketch& sketch) const {
+double FamilyFit::explained(const Sketch& sketch, double reach_px) const {
   const SampleLayout layout = plan_samples(sketch, 2 * world_.footprint);
   const Samples samples = evaluate_samples(sketch, layout);
   const CurvePoints points{samples.position, samples.tangent, layout.first};
-  long flagged = 0, all = 0;
-  for (const int v : views_) {
-    std::vector<char> flags(world_.maps[v].edgels.size());
-    explain_in_view(world_, v, points, {}, &flags);
-    flagged += std::count(flags.begin(), flags.end(), 1);
-    all += long(flags.size());
-  }
-  return all > 0 ? double(flagged) / double(all) : 0;
+  const bool round = std::any_of(sketch.strokes.begin(), sketch.strokes.end(),
+                                 [](const Stroke& s) { return s.kind != StrokeKind::kLine; });
+  ExplainOptions explain;
+  explain.reach_px = reach_px;
+  std::vector<long> flagged(views_.size()), all(views_.size());
+  parallel_for(int(views_.size()), 1, [&](int k) {
+    const std::vector<Edgel>& edgels = world_.maps[views_[k]].edgels;
+    std::vector<char> flags(edgels.size());
+    explain_in_view(world_, views_[k], points, explain, &flags);
+    for (size_t e = 0; e < edgels.size(); ++e) {
+      flagged[k] += flags[e];
+      all[k] += flags[e] || !(round && edgels[e].outline);
+    }
+  });
+  const long total = std::accumulate(all.begin(), all.end(), 0L);
+  return total > 0 ? double(std::accumulate(flagged.begin(), flagged.end(), 0L)) / double(total)
+                   : 0;
 }
 
 }  // namespace sketchsplat

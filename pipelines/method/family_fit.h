@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "edges/views/lift.h"
@@ -31,13 +32,15 @@ class FamilyFit {
 
   /// Gauss-Newton on pose and numbers, by the distances to edgels that run the same way within a
   /// reach that shrinks from a tenth of the object to 1.5 px, with the family's covariance as
-  /// prior. Places of a stroke in a view count as few: their errors go together.
+  /// prior. Places of a stroke in a view count as few: their errors go together. Where the first
+  /// steps lead to a place where hardly any edgel lies, the last ones are left out.
   Sibling fit(Sibling start) const;
 
   Sketch sketch(const Sibling& sibling) const;
 
-  /// Share of the edgels that lie along its strokes.
-  double explained(const Sketch& sketch) const;
+  /// Share of the edgels that lie along its strokes, within `reach_px`. Outlines that lie along
+  /// none do not count if some stroke is curved: round surfaces have contours that are no edges.
+  double explained(const Sketch& sketch, double reach_px = 2) const;
 
  private:
   class Lookup;
@@ -48,7 +51,7 @@ class FamilyFit {
   const Family& family_;
   const EdgeWorld& world_;
   std::vector<int> views_;
-  std::vector<Lookup> lookups_;  // of views_
+  std::vector<std::unique_ptr<Lookup>> lookups_;  // of views_
   Eigen::MatrixXd precision_;
   double widest_px_ = 0;
 };

@@ -2,6 +2,7 @@
 #include "pipelines/method/family_start.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -11,16 +12,19 @@
 #include "pipelines/method/family_fit.h"
 #include "pipelines/stages/stages.h"
 #include "sketches/curve/curve.h"
+#include "sketches/curve/sample.h"
 
 namespace sketchsplat {
 namespace {
 
-constexpr int kFitViews = 16;      // that most steps of the fit look at
-constexpr int kStarts = 3;         // that are followed to the end, at most
-constexpr double kGood = 0.9;      // of the edgels explained: no other start is tried
+constexpr int kFitViews = 16;       // that most steps of the fit look at
+constexpr int kStarts = 3;          // that are followed to the end, at most
+constexpr double kGood = 0.9;       // of the edgels explained: no other start is tried
 constexpr double kExplained = 0.8;  // of the edgels, at least, by a sibling
+constexpr double kPromising = 0.7;  // of the edgels, at least, before strokes are set free
 constexpr double kSeen = 0.6;       // of its length that the views show, at least
 constexpr double kFreeReach = 3;    // [px] of edgels that pull at strokes that are set free
+constexpr double kMostMoved = 6;    // [px] of a stroke by these: else it is another edge
 constexpr double kFreeCover = 0.5;  // of a stroke that its views show, at least, to set it free
 
 std::vector<Sketch> read_siblings(const std::string& paths, const std::string& folder) {
@@ -51,8 +55,20 @@ Best best_fit(const FamilyFit& fit) {
   return best;
 }
 
-// Every stroke on its own, if enough views see it; the others stay where the family's fit has them,
-// but for the ends that they share.
+// [px] By how much each stroke was moved, at its worst place.
+std::vector<double> moves_px(const Sketch& from, const Sketch& to, double footprint) {
+  const SampleLayout layout = plan_samples(from, kFreeReach * footprint);
+  const Samples before = evaluate_samples(from, layout), after = evaluate_samples(to, layout);
+  std::vector<double> out(from.size());
+  for (int i = 0; i < layout.size(); ++i) {
+    const double move = (after.position.col(i) - before.position.col(i)).norm() / footprint;
+    out[layout.stroke[i]] = std::max(out[layout.stroke[i]], move);
+  }
+  return out;
+}
+
+// Every stroke on its own, if enough views see it and it did not move onto another edge; the others
+// stay where the family's fit has them, but for the ends that they share.
 struct Freed {
   Sketch sketch;
   std::vector<bool> free;
@@ -66,11 +82,12 @@ Freed set_free(const Sketch& fitted, const EdgeWorld& world, const ReconstructOp
   match.quadratics = false;
   const StrokeObservation o =
       with_strokes(observe(out.sketch, world, match, options.polish.spacing_px), world, 1);
+  const std::vector<double> moved = moves_px(fitted, out.sketch, world.footprint);
   std::vector<bool> holds(fitted.nodes.cols());  // node of a free stroke
   for (int s = 0; s < fitted.size(); ++s) {
     const Stroke& stroke = fitted.strokes[s];
     out.free.push_back(o.strokes[s].views >= options.select.min_views &&
-                       o.strokes[s].cover > kFreeCover);
+                       o.strokes[s].cover > kFreeCover && moved[s] < kMostMoved);
     for (const int n : {stroke.begin, stroke.end})
       if (n >= 0 && out.free[s]) holds[n] = true;
     for (int h = 0; h < num_handles(stroke.kind) && !out.free[s]; ++h)
@@ -84,12 +101,21 @@ Freed set_free(const Sketch& fitted, const EdgeWorld& world, const ReconstructOp
 }  // namespace
 
 FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,
-                           RunReport* report, Progress* progress) {
+                                RunReport* report, Progress* progress) {
   if (options.like.empty()) return {};
   Stage stage("family", 0, report, progress);
   const Family family = learn_family(read_siblings(options.like, options.like_folder));
   const FamilyFit fit(family, world, kFitViews);
   const Best best = best_fit(fit);
+  report->counts.push_back({"family_siblings", double(family.siblings)});
+  report->counts.push_back({"family_numbers", double(family.mean.size())});
+  report->counts.push_back({"family_edgels_fitted", best.explained});
+  if (best.explained < kPromising) {
+    report->counts.push_back({"family_followed", 0});
+    stage.result("no sibling: " + std::to_string(std::lround(100 * best.explained)) +
+                 " % of the edgels");
+    return {};
+  }
   const Freed freed = set_free(best.sketch, world, options);
   const Sketch& sketch = freed.sketch;
   SelectOptions select = select_options(options);
@@ -112,9 +138,6 @@ FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions
   }
   const double explained = fit.explained(chosen.sketch);
   const bool is_sibling = explained >= kExplained && seen >= kSeen * length;
-  report->counts.push_back({"family_siblings", double(family.siblings)});
-  report->counts.push_back({"family_numbers", double(family.mean.size())});
-  report->counts.push_back({"family_edgels_fitted", best.explained});
   report->counts.push_back({"family_edgels_explained", explained});
   report->counts.push_back({"family_length_seen", length > 0 ? seen / length : 0});
   report->counts.push_back({"family_followed", double(is_sibling)});

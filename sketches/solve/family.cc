@@ -147,8 +147,8 @@ ControlPoints as_partner(StrokeKind kind, const ControlPoints& ours, ControlPoin
     ControlPoints out = theirs;
     for (const double sign : {1.0, -1.0}) {
       const Eigen::Vector3d u = theirs.p[1], v = sign * theirs.p[2];
-      const double a = std::atan2(ours.p[1].dot(v) - ours.p[2].dot(u),
-                                  ours.p[1].dot(u) + ours.p[2].dot(v));
+      const double a =
+          std::atan2(ours.p[1].dot(v) - ours.p[2].dot(u), ours.p[1].dot(u) + ours.p[2].dot(v));
       const Eigen::Vector3d nu = std::cos(a) * u + std::sin(a) * v;
       const Eigen::Vector3d nv = std::cos(a) * v - std::sin(a) * u;
       const double fit = ours.p[1].dot(nu) + ours.p[2].dot(nv);
@@ -258,6 +258,16 @@ double matched_length(const Sketch& graph, const std::vector<StrokeMatch>& match
   return sum;
 }
 
+// Vectors of closed strokes point to where their largest coordinate is positive, which changes no
+// curve: two circles about one axis have one radius then, and not two of opposite sign.
+void turn_vectors(const std::vector<bool>& vectors, Sketch* graph) {
+  for (int h = 0; h < graph->handles.cols(); ++h) {
+    Eigen::Index largest;
+    if (!vectors[h] || !(graph->handles.col(h).cwiseAbs().maxCoeff(&largest) > 0)) continue;
+    if (graph->handles(largest, h) < 0) graph->handles.col(h) *= -1;
+  }
+}
+
 // The sibling whose strokes the others have most of; its matches with all.
 int most_typical(const std::vector<Sketch>& siblings,
                  std::vector<std::vector<StrokeMatch>>* matches) {
@@ -332,8 +342,11 @@ void measure_spread(double extent, Family* family) {
   family->covariance.diagonal() += (1 + 1.0 / n) * shrink * sample.diagonal();
   family->covariance.diagonal().array() += novelty * novelty;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> es(sample, Eigen::EigenvaluesOnly);
-  family->modes = es.eigenvalues().reverse().head(std::min<Eigen::Index>(n - 1, sample.rows()))
-                      .cwiseMax(0).cwiseSqrt();
+  family->modes = es.eigenvalues()
+                      .reverse()
+                      .head(std::min<Eigen::Index>(n - 1, sample.rows()))
+                      .cwiseMax(0)
+                      .cwiseSqrt();
 }
 
 }  // namespace
@@ -358,6 +371,7 @@ Family learn_family(const std::vector<Sketch>& siblings) {
   const Sketch& graph = family.graph;
   const double extent = largest_extent(graph);
   const std::vector<bool> vectors = are_vectors(graph);
+  turn_vectors(vectors, &family.graph);
   const int nodes = int(graph.nodes.cols()), points = nodes + int(graph.handles.cols());
   Eigen::MatrixXd values(3 * points, family.siblings);
   family.had_by.assign(graph.size(), 0);

@@ -55,6 +55,17 @@ TEST(FamilyStart, FiveViewsAreEnoughForAPartWhoseSiblingsAreKnown) {
   EXPECT_LE(f_at(score(cold, scene.path()).fine, 0.005), at_once - 10);
 }
 
+// The contours of its cylinders are a third of the edgels, and no edges.
+TEST(FamilyStart, AShaftIsFollowedThoughTheContoursOfItsCylindersAreNoEdges) {
+  const TempFolder scene, siblings;
+  write_scene(synthesize(part_options("stepped-shaft", 1, 5)), scene.path());
+  ReconstructOptions options;
+  options.like = write_siblings("stepped-shaft", siblings);
+  const Reconstruction warm = reconstruct(open_scene(scene.path()), options, nullptr);
+  EXPECT_EQ(count(warm.report, "family_followed"), 1);
+  EXPECT_GE(f_at(score(warm.sketch, scene.path()).fine, 0.005), 95);
+}
+
 TEST(FamilyStart, APartOfAnotherKindIsReconstructedAsWithoutSiblings) {
   const TempFolder scene, siblings;
   write_scene(synthesize(part_options("box-hole", 1, 8)), scene.path());

@@ -52,7 +52,9 @@ Sketch shuffled(const Sketch& sketch, unsigned seed, std::vector<int>* order) {
 }
 
 std::vector<Block> blocks() {
-  return {{1, 0.6, 0.3, 0.1, 0.4}, {1, 0.7, 0.25, 0.14, 0.5}, {1, 0.5, 0.4, 0.12, 0.55},
+  return {{1, 0.6, 0.3, 0.1, 0.4},
+          {1, 0.7, 0.25, 0.14, 0.5},
+          {1, 0.5, 0.4, 0.12, 0.55},
           {1, 0.65, 0.35, 0.09, 0.45}};
 }
 
@@ -85,6 +87,18 @@ TEST(Family, CoordinatesThatPartsShareAreOneNumber) {
   EXPECT_NEAR((same.nodes(1, 2) - same.nodes(1, 0)) / scale, 0.5, 1e-9);
   EXPECT_NEAR((same.nodes(2, 4) - same.nodes(2, 0)) / scale, 0.4, 1e-9);
   EXPECT_NEAR(stroke_length(same, 12) / scale, 2 * M_PI * 0.12, 1e-6);
+}
+
+TEST(Family, CirclesAboutOneAxisHaveOneRadiusWhicheverWayTheirNormalsPoint) {
+  std::vector<Sketch> siblings;
+  for (const Block& b : blocks()) {
+    siblings.push_back(make_block(b));
+    siblings.back().handles.rightCols(1) *= -1;
+  }
+  const Family family = learn_family(siblings);
+  EXPECT_EQ(family.mean.size(), 6 + 2 + 3);
+  const Sketch same = family.with(family.numbers.col(2));
+  EXPECT_NEAR(stroke_length(same, 12), stroke_length(same, 13), 1e-9);
 }
 
 TEST(Family, WhatASiblingLacksMovesAsItsNeighboursDoAndIsLessProbable) {
