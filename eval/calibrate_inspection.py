@@ -86,31 +86,47 @@ PLACES = 5  # of a piece
 NORMAL = np.random.default_rng(1).standard_normal((400, 2 * PLACES))  # draws of its errors
 REACHES = np.array([0.1, 0.2, 0.35, 0.5, 0.75, 1, 1.5, 2.5]) / 1000
 FLOOR_PX = 0.003
+SIZES = np.array([0.15, 0.25, 0.4, 0.63, 1, 1.6, 2.5, 4, 6.3])  # kErrorSizes
+KINDS = ["straight", "closed", "arc", "free"]  # of_kind() of sigma_model.h
+KIND_OF = {"line": 0, "circle": 1, "ellipse": 1, "arc": 2, "elliptic_arc": 3, "bezier": 3}
+SEEN = 2  # errors of a kind that were met of each size already
+LEAST_GAIN = 2e-5  # of the mean log probability of an event
 
-# SigmaOptions, where the fit starts.
-START = {"straight_factor": 0.3, "straight_power": 0.5, "straight_place": 0.3,
-         "straight_views": 0.2, "curved_factor": 0.8, "curved_power": 0.5, "curved_place": 0.1,
-         "curved_views": 0.1, "place_px": 0.003, "curvature_px2": 0.3,
-         "curvature_sigma_px2": 0.3, "dark_side_px": 0.05, "tail_share": 0.1, "straight_tail": 3,
-         "curved_tail": 2.5}
+# SigmaOptions, where the fit starts, without the shares of sizes.
+START = {"place_px": 0.0008, "curvature_px2": 0.2, "curvature_sigma_px2": 0.5,
+         "dark_side_px": 0.03, "straight_form_px": 0.25, "form_px": 0.14,
+         "straight_factor": 0.1, "straight_power": 1, "straight_place": 0.6, "straight_views": 0.3,
+         "closed_factor": 0.6, "closed_power": 1, "closed_place": 0.3, "closed_views": 0.05,
+         "arc_factor": 0.5, "arc_power": 0.3, "arc_place": 0.1, "arc_views": 0.06,
+         "free_factor": 1, "free_power": 0.3, "free_place": 0.1, "free_views": 0.06}
+
+
+def form_errors():
+    """Covariance of form_errors() of sigma_model.cc along any axis: places x places, doubled."""
+    u = np.arange(PLACES) / (PLACES - 1)
+    columns = np.full((PLACES, 5), 0.5)
+    for k in range(4):
+        columns[:, k] = np.cos((k + 1) * np.pi * u) / 2
+    return (columns @ columns.T).repeat(2, axis=0).repeat(2, axis=1)
+
+
+FORM = form_errors()
 
 
 def arrays_of(pieces):
     n = 2 * PLACES
     of = lambda key: np.array([p[key] for p in pieces], float)
     shift = of("shift").reshape(-1, n, 3)
-    deviation = of("deviation")
-    return {"straight": np.array([p["kind"] == "line" for p in pieces]),
-            "deviation": deviation,
-            "covariance": of("covariance").reshape(-1, n, n),
+    return {"kind": np.array([KIND_OF[p["kind"]] for p in pieces]), "simpler": of("simpler"),
+            "deviation": of("deviation"), "covariance": of("covariance").reshape(-1, n, n),
             "shift": shift @ shift.transpose(0, 2, 1), "bend": of("bend"),
             "footprint": of("footprint"), "sigma": of("sigma"),
             "bias": of("bias_px"), "views": of("view_bias_px")}
 
 
-def probabilities(p, x):
-    """That the largest error of each piece is within each of REACHES, as SigmaModel says."""
-    of_kind = lambda name: np.where(x["straight"], p["straight_" + name], p["curved_" + name])
+def by_size(p, x):
+    """pieces x reaches x sizes: that the largest error is within a reach if errors have a size."""
+    of_kind = lambda name: np.array([p[f"{kind}_{name}"] for kind in KINDS])[x["kind"]]
     px2 = x["footprint"] ** 2
     ratio = np.maximum(x["bias"], 0.004) * x["footprint"] / x["sigma"]
     own = (of_kind("factor") * ratio ** of_kind("power")) ** 2
@@ -120,42 +136,67 @@ def probabilities(p, x):
     of_place = np.linalg.norm(x["bend"].reshape(-1, PLACES, 2), axis=2).repeat(2, axis=1)
     inwards = np.divide(x["bend"], of_place, out=np.zeros_like(x["bend"]), where=of_place > 0)
     dark = p["dark_side_px"] * x["footprint"][:, None] * inwards
+    form = np.where(x["kind"] == 0, p["straight_form_px"], p["form_px"]) * x["simpler"]
     v = (own[:, None, None] * x["covariance"] + place[:, None, None] * x["shift"] +
          bend[:, :, None] * bend[:, None, :] + dark[:, :, None] * dark[:, None, :] +
+         (form ** 2 * px2)[:, None, None] * FORM * x["shift"] +
          (FLOOR_PX ** 2 * px2)[:, None, None] * np.eye(2 * PLACES))
     draws = NORMAL @ np.linalg.cholesky(v).transpose(0, 2, 1)
-    largest = np.sqrt((draws[:, :, ::2] ** 2 + draws[:, :, 1::2] ** 2).max(axis=2))
-    share = p["tail_share"]
-    return np.array([(1 - share) * (largest <= r).mean(axis=1) +
-                     share * (largest * of_kind("tail")[:, None] <= r).mean(axis=1)
-                     for r in REACHES]).T
+    largest = np.sort(np.sqrt((draws[:, :, ::2] ** 2 + draws[:, :, 1::2] ** 2).max(axis=2)))
+    within = REACHES[:, None] / SIZES
+    return np.array([np.searchsorted(row, within, side="right") / len(row) for row in largest])
 
 
-def score(p, x):
-    """Mean log probability of what is the case: is the piece within each of REACHES or not?"""
-    stated = np.clip(probabilities(p, x), 0.003, 0.997)
+def happened(p, x):
+    """pieces x reaches: is the largest error within a reach?"""
     off = x["deviation"] - p["curvature_px2"] * x["bend"]
-    largest = np.hypot(off[:, ::2], off[:, 1::2]).max(axis=1)
-    return np.where(largest[:, None] <= REACHES, np.log(stated), np.log(1 - stated)).mean()
+    return np.hypot(off[:, ::2], off[:, 1::2]).max(axis=1)[:, None] <= REACHES
+
+
+def shares_of(events):
+    """kinds x sizes: the likeliest shares, by the EM algorithm."""
+    shares = np.full((len(KINDS), len(SIZES)), 1 / len(SIZES))
+    for kind in range(len(KINDS)):
+        chances = np.concatenate([
+            np.where(there[k == kind][:, :, None], chance[k == kind], 1 - chance[k == kind])
+            .reshape(-1, len(SIZES)) for chance, there, k in events])
+        chances = np.clip(chances, 1e-4, 1)
+        for _ in range(80):
+            of_each = chances * shares[kind]
+            counts = (of_each / of_each.sum(axis=1, keepdims=True)).sum(axis=0) + SEEN
+            shares[kind] = counts / counts.sum()
+    return shares
+
+
+def score(p, sets):
+    """Mean log probability of what is the case, the conditions count alike; the shares of sizes."""
+    events = [(by_size(p, x), happened(p, x), x["kind"]) for x in sets]
+    shares = shares_of(events)
+    means = []
+    for chance, there, kind in events:
+        stated = np.clip((chance * shares[kind][:, None, :]).sum(axis=2), 0.003, 0.997)
+        means.append(np.where(there, np.log(stated), np.log(1 - stated)).mean())
+    return np.mean(means), shares
 
 
 def fit(sets):
-    """Each parameter in turn, in steps that get smaller; the conditions count alike."""
-    mean = lambda p: np.mean([score(p, x) for x in sets])
-    best, value = dict(START), -np.inf
-    for step in [1.6, 1.25, 1.1, 1.04]:
-        for _ in range(6):
+    """Each parameter in turn, in steps that get smaller."""
+    best, value = dict(START), score(START, sets)[0]
+    for step in [1.6, 1.25, 1.1]:
+        for _ in range(5):
             before = value
             for name in START:
                 for factor in (step, 1 / step):
                     trial = {**best, name: best[name] * factor}
-                    usable = trial["tail_share"] < 0.5 and min(
-                        trial["straight_tail"], trial["curved_tail"]) >= 1
-                    there = mean(trial) if usable else -np.inf
-                    if there > value + 2e-5:
+                    there = score(trial, sets)[0]
+                    if there > value + LEAST_GAIN:
                         best, value = trial, there
             if value == before:
                 break
+    value, shares = score(best, sets)
+    for kind, row in zip(KINDS, shares):
+        for k, share in enumerate(row):
+            best[f"{kind}_share_{k}"] = share
     return best, value
 
 
@@ -282,7 +323,7 @@ def main():
               ", ".join(f"{n} {v:.3g}" for n, v in best.items()))
         path = arguments.work + "/calibration.json"
         with open(path, "w") as file:
-            json.dump({n: float(f"{v:.3g}") for n, v in best.items()}, file, indent=1)
+            json.dump({n: round(v, 4) for n, v in best.items()}, file, indent=1)
         options = ["--calibration", path]
     for condition in conditions:
         report(condition, scenes, binary, options, arguments.draws)

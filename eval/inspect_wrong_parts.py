@@ -22,7 +22,7 @@ import time
 
 import numpy as np
 
-VIEWS = "--views 24 --resolution 400 --object-size 0.7 --noise 3 --outputs none -q".split()
+VIEWS = "--views 50 --resolution 1600 --noise 3 --outputs none -q".split()
 WRONG = ["--param", "hole-shift=0.001", "--param", "bore-error=2"]
 
 

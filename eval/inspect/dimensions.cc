@@ -80,8 +80,7 @@ class Finder {
     const auto offset = [&](int a, int b) {
       return (nominal_.planes[b].point - nominal_.planes[a].point).dot(nominal_.planes[a].normal);
     };
-    for (const auto& [a, b] :
-         parallel_neighbours(all, direction, offset, kSame * nominal_.extent))
+    for (const auto& [a, b] : parallel_neighbours(all, direction, offset, kSame * nominal_.extent))
       add(DimensionKind::kPlaneDistance, {{FeatureKind::kPlane, a}, {FeatureKind::kPlane, b}});
   }
 
@@ -292,7 +291,7 @@ DimensionCheck measure(const Dimension& dimension,
   for (const MeasuredFeature* f : features) {
     if (!f->value.ok) return out;
     values.push_back(f->value);
-    out.wide = std::max(out.wide, f->wide);
+    out.shares = worse_of(out.shares, f->shares);
   }
   out.value = dimension_value(dimension, values);
   out.measured = std::isfinite(out.value);
@@ -306,9 +305,11 @@ DimensionCheck measure(const Dimension& dimension,
   double own = 0, other = 0;
   for (const auto& [error, effect] : effects) (error.second ? other : own) += effect * effect;
   if (!is_angle(dimension.kind))
-    other += std::pow(sigma.options.scale_percent / 100 * out.value, 2);
+    out.stated = sigma.options.scale_percent / 100 * std::abs(out.value);
+  if (!is_angle(dimension.kind) && sigma.alignment)
+    other += std::pow(spread(out.shares) * sigma.alignment->scale_sigma * out.value, 2);
   out.sigma = std::sqrt(own);
-  out.systematic = std::sqrt(other);
+  out.systematic = std::hypot(std::sqrt(other), out.stated);
   return out;
 }
 

@@ -47,7 +47,8 @@ struct DimensionCheck {
   bool measured = false;
   double value = 0;
   double sigma = 0, systematic = 0;  ///< from the edgels; from what they do not know
-  double wide = 1;                   ///< by so much both grow in tails
+  ErrorShares shares = {};           ///< of the sizes of both, but for
+  double stated = 0;                 ///< the part of `systematic` that is of a stated scale
 };
 
 /// Measures all of them; the errors of a stroke that two features share count once.

@@ -13,7 +13,6 @@ namespace {
 // parabola that is largest between two of 13 places is 1.4 % less there, a cubic 4.2 %.
 constexpr int kPlaces = 13;
 constexpr double kBetween = 0.95;
-constexpr double kFloor = 0.01;  // [tolerances] of errors: better is not told apart
 // Two lines are farthest apart at an end: two places are all.
 
 void summarise(const EdgeMatch& match, EdgeCheck* check) {
@@ -73,13 +72,12 @@ MeasuredEdge measure_edge(const EdgeMatch& match, const NominalEdge& edge, const
     const bool straight =
         edge.kind == StrokeKind::kLine && measured.strokes[s].kind == StrokeKind::kLine;
     const std::vector<EdgePlace> places = places_beside(match, s, straight ? 2 : kPlaces);
-    PieceErrors errors = piece_errors(measured, places, held, sigma);
+    PieceErrors errors = piece_errors(measured, places, edge.kind, held, sigma);
     errors.model.between = straight ? 1 : kBetween;
     check.sigma = std::max(check.sigma, errors.sigma);
     check.systematic = std::max(check.systematic, errors.systematic);
     check.open = check.open || is_open(measured, s);
-    out.pieces.emplace_back(errors, sigma.options.tail_share, rigid_deviations(places),
-                            kFloor * tolerance);
+    out.pieces.emplace_back(errors, rigid_deviations(places), tolerance);
   }
   return out;
 }

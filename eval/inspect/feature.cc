@@ -148,7 +148,7 @@ MeasuredFeature measured_feature(const Nominal& nominal, const Association& asso
   if (!out.value.ok) return out;
   for (const auto& [stroke, members] : of_stroke) {
     const StrokeErrors errors(measured, sigma, stroke);
-    out.wide = std::max(out.wide, sigma.wide(measured.strokes[stroke].kind));
+    out.shares = worse_of(out.shares, of_kind(sigma.options, measured.strokes[stroke].kind).shares);
     std::vector<Eigen::Matrix<double, 3, kErrorsOfStroke>> moves;
     for (const int i : members) moves.push_back(errors.at(places[i].t));
     for (int k = 0; k < kErrorsOfStroke; ++k) {

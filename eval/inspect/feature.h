@@ -37,7 +37,7 @@ struct MeasuredFeature {
     Feature moved;
   };
   std::vector<Error> errors;
-  double wide = 1;  ///< by so much the errors of its worst stroke grow in tails
+  ErrorShares shares = {};  ///< of the sizes of errors, of its worst stroke
 };
 
 /// Of the nominal part itself, by the places of its edges.

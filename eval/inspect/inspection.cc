@@ -76,13 +76,18 @@ double dimension_tolerance(const Dimension& d, double edges, const InspectOption
                : iso2768_linear(o.iso, d.nominal * o.unit_mm) / o.unit_mm;
 }
 
+// In tolerances.
+NumberError error_of(const DimensionCheck& c, double tolerance) {
+  const double fitted = std::sqrt(std::max(0.0, c.systematic * c.systematic - c.stated * c.stated));
+  return {std::hypot(c.sigma, fitted) / tolerance, c.shares, c.stated / tolerance};
+}
+
 // With the prior that all dimensions of the part say together, in units of their tolerances.
 std::vector<DimensionResult> judge(const std::vector<DimensionCheck>& checks, double tolerance,
                                    const InspectOptions& o, DeviationPrior* prior) {
   std::vector<DimensionResult> out;
   std::vector<std::vector<double>> evidence;
   const DeviationPrior vague = vague_prior(1);
-  const double tail = o.sigma.tail_share;
   for (const DimensionCheck& c : checks) {
     DimensionResult d;
     d.check = c;
@@ -92,8 +97,7 @@ std::vector<DimensionResult> judge(const std::vector<DimensionCheck>& checks, do
     std::vector<double> logs;
     for (const double scale : vague.scales)
       logs.push_back(number_log_evidence((c.value - c.dimension.nominal) / d.tolerance,
-                                         std::hypot(c.sigma, c.systematic) / d.tolerance, c.wide,
-                                         tail, scale));
+                                         error_of(c, d.tolerance), scale));
     evidence.push_back(logs);
   }
   *prior = o.learn_prior ? learn_prior(vague, evidence) : vague;
@@ -101,8 +105,7 @@ std::vector<DimensionResult> judge(const std::vector<DimensionCheck>& checks, do
     const DimensionCheck& c = d.check;
     if (!c.measured) continue;
     d.probability = number_probability((c.value - c.dimension.nominal) / d.tolerance,
-                                       std::hypot(c.sigma, c.systematic) / d.tolerance, c.wide,
-                                       tail, 1, *prior);
+                                       error_of(c, d.tolerance), 1, *prior);
     if (is_angle(c.dimension.kind) || !o.align.fit_scale) d.verdict = verdict_of(d.probability);
   }
   return out;
@@ -159,8 +162,6 @@ Inspection inspect(const Nominal& nominal, const Sketch& measured, double footpr
   out.association = associate(out.measured, nominal, options.associate, seen_by);
   const bool moves = options.align.to == AlignTo::kBestFit;
   if (!moves) out.alignment.holds.assign(nominal.edges.size(), true);
-  options.sigma.scale_percent =
-      std::hypot(options.sigma.scale_percent, 100 * out.alignment.scale_sigma);
   const SigmaModel sigma{options.sigma, footprint * out.alignment.pose.scale,
                          typical_bias_px(measured), &out.alignment, true};
   take_off_pull(sigma, &out);

@@ -110,7 +110,9 @@ Json dimension_json(const DimensionResult& d, const Nominal& nominal) {
   out["deviation"] = c.measured ? number(c.value - c.dimension.nominal) : Json();
   out["sigma"] = c.measured ? number(c.sigma) : Json();
   out["systematic"] = c.measured ? number(c.systematic) : Json();
-  out["wide"] = c.measured ? number(c.wide) : Json();
+  out["stated"] = c.measured ? number(c.stated) : Json();
+  out["error_sizes"] = c.measured ? Json(sizes_of(c.shares)) : Json();
+  out["error_shares"] = c.measured ? Json(c.shares) : Json();
   out["tolerance"] = number(d.tolerance);
   out["probability"] = c.measured ? number(d.probability) : Json();
   out["verdict"] = verdict_name(d.verdict);
@@ -263,19 +265,21 @@ std::string pieces_json(const Inspection& inspection, const Nominal& nominal, do
     for (const int s : inspection.association.edges[e].strokes) {
       const std::vector<EdgePlace> places = places_beside(inspection.association.edges[e], s, 5);
       const int n = 2 * int(places.size());
-      const Eigen::MatrixXd modes = piece_errors(measured, places, true, raw).model.modes;
+      const Eigen::MatrixXd modes =
+          piece_errors(measured, places, nominal.edges[e].kind, true, raw).model.modes;
       Eigen::MatrixXd shift(n, 3), bend(n, 1), off(n, 1);
       for (int j = 0; j < n / 2; ++j) {
         const Eigen::Matrix<double, 2, 3> across = frame_across(places[j].tangent);
         shift.middleRows<2>(2 * j) = across;
         bend.middleRows<2>(2 * j) = across * bend_at(measured, s, places[j].t, footprint);
-        off.middleRows<2>(2 * j) = across * places[j].deviation +
-                                   inspection.pull_px2 * bend.middleRows<2>(2 * j);
+        off.middleRows<2>(2 * j) =
+            across * places[j].deviation + inspection.pull_px2 * bend.middleRows<2>(2 * j);
       }
       const Evidence& evidence = measured.evidence[s];
       pieces.push_back({{"edge", nominal.edges[e].name},
                         {"presence", presence_name(inspection.edges[e].presence)},
                         {"kind", kind_name(measured.strokes[s].kind)},
+                        {"simpler", is_simpler(measured.strokes[s].kind, nominal.edges[e].kind)},
                         {"footprint", number(footprint)},
                         {"sigma", number(evidence.sigma)},
                         {"bias_px", number(evidence.bias_px)},

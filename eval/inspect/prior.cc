@@ -19,7 +19,9 @@ constexpr double kEachCounts = 0.1;    // things that each scale has been seen i
 constexpr int kRounds = 200;           // of the EM algorithm
 constexpr double kLeastWeight = 1e-4;  // of a part of a mixture
 constexpr double kLeastRigid = 1e-6;  // of singular values: turns of a line about itself do nothing
-constexpr double kLittle = 0.125;     // of the scale, of what deviates little
+constexpr double kUnmodelled =
+    0.7;                         // of the errors, in every direction: shapes are not known better
+constexpr double kFloor = 0.01;  // [tolerances] of errors: better is not told apart
 
 double log_sum(const std::vector<double>& logs) {
   const double most = *std::max_element(logs.begin(), logs.end());
@@ -85,64 +87,83 @@ MatrixXd rigid_deviations(const std::vector<EdgePlace>& places) {
   return out;
 }
 
-PieceLikelihood::PieceLikelihood(const PieceErrors& errors, double tail_share,
-                                 const MatrixXd& rigid, double floor)
-    : measured_(errors.model), wide_(errors.wide) {
-  const Eigen::JacobiSVD<MatrixXd> svd(rigid, Eigen::ComputeThinU);
+namespace {
+
+// Orthonormal columns that span those of `moves`.
+MatrixXd span_of(const MatrixXd& moves) {
+  if (moves.cols() == 0) return moves;
+  const Eigen::JacobiSVD<MatrixXd> svd(moves, Eigen::ComputeThinU);
   Eigen::Index k = 0;
   while (k < svd.singularValues().size() &&
          svd.singularValues()[k] > kLeastRigid * svd.singularValues()[0])
     ++k;
-  basis_ = svd.matrixU().leftCols(k);
-  // Everything deviates, or the place, the direction or the size alone, and the rest little.
+  return svd.matrixU().leftCols(k);
+}
+
+}  // namespace
+
+PieceLikelihood::PieceLikelihood(const PieceErrors& errors, const MatrixXd& rigid, double tolerance)
+    : measured_(errors.model), stated_(errors.stated), basis_(span_of(rigid)) {
+  // Everything deviates, or the place, the direction or the size alone.
   for (int wrong = 0; wrong < kWays; ++wrong) {
-    VectorXd by = VectorXd::Constant(7, wrong == 0 ? 1 : kLittle);
+    VectorXd by = VectorXd::Constant(7, wrong == 0);
     if (wrong == 1) by.head<3>().setOnes();
     if (wrong == 2) by.segment<3>(3).setOnes();
     if (wrong == 3) by[6] = 1;
-    const MatrixXd moves = basis_.transpose() * rigid * by.asDiagonal();
-    shapes_.push_back(moves * moves.transpose());
+    moves_.push_back(basis_.transpose() * rigid * by.asDiagonal());
   }
+  little_ = kFinest * tolerance * basis_.transpose() * rigid;
   const VectorXd mean = measured_.mean.reshaped();
-  rigid_ = basis_.transpose() * mean;
-  wave_ = mean - basis_ * rigid_;
-  const MatrixXd own = basis_.transpose() * measured_.modes;
-  others_ = measured_.modes - basis_ * own;
-  const MatrixXd least = floor * floor * MatrixXd::Identity(k, k);
-  const auto add = [&](double factor, double share) {
-    if (share > 0)
-      kinds_.push_back({factor, share, factor * factor * own * own.transpose() + least});
-  };
-  add(1, 1 - tail_share);
-  add(wide_, tail_share);
+  known_ = basis_.transpose() * mean;
+  const MatrixXd all = basis_.transpose() * measured_.modes;
+  const MatrixXd own = all.leftCols(all.cols() - stated_), stated = all.rightCols(stated_);
+  wave_ = mean - basis_ * known_;
+  const double noise = (measured_.modes - basis_ * all).squaredNorm();
+  wave_ *= errors.simpler ? 0 : std::max(0.0, 1 - noise / std::max(1e-300, wave_.squaredNorm()));
+  const Eigen::Index n = own.rows();
+  const MatrixXd expected = own * own.transpose() + kUnmodelled * kUnmodelled * own.squaredNorm() /
+                                                        double(n) * MatrixXd::Identity(n, n);
+  const MatrixXd always =
+      stated * stated.transpose() + std::pow(kFloor * tolerance, 2) * MatrixXd::Identity(n, n);
+  const auto sizes = sizes_of(errors.shares);
+  for (size_t k = 0; k < sizes.size(); ++k)
+    if (errors.shares[k] > 0)
+      kinds_.push_back({sizes[k], errors.shares[k], sizes[k] * sizes[k] * expected + always});
+}
+
+MatrixXd PieceLikelihood::prior_moves(double scale, int wrong) const {
+  MatrixXd out(little_.rows(), moves_[wrong].cols() + little_.cols());
+  out << scale * moves_[wrong], little_;
+  return out;
 }
 
 double PieceLikelihood::log_evidence(double scale, int wrong, const Kind& kind) const {
-  const Eigen::LLT<MatrixXd> llt(scale * scale * shapes_[wrong] + kind.covariance);
-  const VectorXd z = llt.matrixL().solve(rigid_);
-  const MatrixXd l = llt.matrixL();
-  return std::log(kind.share / kWays) - 0.5 * z.squaredNorm() - l.diagonal().array().log().sum();
+  const MatrixXd moves = prior_moves(scale, wrong);
+  const Eigen::LLT<MatrixXd> llt(moves * moves.transpose() + kind.covariance);
+  const VectorXd z = llt.matrixL().solve(known_);
+  const double log_share = std::log(kind.share / double(moves_.size()));
+  return log_share - 0.5 * z.squaredNorm() - llt.matrixLLT().diagonal().array().log().sum();
 }
 
 double PieceLikelihood::log_evidence(double scale) const {
   std::vector<double> logs;
   for (const Kind& kind : kinds_)
-    for (int wrong = 0; wrong < kWays; ++wrong) logs.push_back(log_evidence(scale, wrong, kind));
+    for (size_t wrong = 0; wrong < moves_.size(); ++wrong)
+      logs.push_back(log_evidence(scale, int(wrong), kind));
   return log_sum(logs);
 }
 
+// Of the standard normal numbers that the moves are taken by: what is not moved stays exactly.
 DeviationModel PieceLikelihood::posterior(double scale, int wrong, const Kind& kind) const {
-  const MatrixXd prior = scale * scale * shapes_[wrong];
-  const Eigen::LLT<MatrixXd> llt(prior + kind.covariance);
+  const MatrixXd moves = prior_moves(scale, wrong);
+  const MatrixXd weighted = kind.covariance.llt().solve(moves);
+  const Eigen::Index n = moves.cols();
+  const Eigen::LLT<MatrixXd> information(MatrixXd::Identity(n, n) + moves.transpose() * weighted);
   DeviationModel out;
-  const VectorXd mean = basis_ * (prior * llt.solve(rigid_)) + wave_;
-  out.mean = mean.reshaped(2, mean.size() / 2);
+  const VectorXd by = information.solve(weighted.transpose() * known_);
+  out.mean = VectorXd(basis_ * (moves * by) + wave_).reshaped(2, basis_.rows() / 2);
   out.between = measured_.between;
-  MatrixXd covariance = prior - prior * llt.solve(prior);
-  // Rounding must not make it indefinite.
-  covariance.diagonal().array() += 1e-12 * prior.diagonal().maxCoeff();
-  out.modes.resize(basis_.rows(), basis_.cols() + others_.cols());
-  out.modes << basis_ * MatrixXd(covariance.llt().matrixL()), kind.factor * others_;
+  out.modes = basis_ * information.matrixL().solve(moves.transpose()).transpose();
   return out;
 }
 
@@ -155,7 +176,7 @@ DeviationMixture PieceLikelihood::posterior(const DeviationPrior& prior) const {
   std::vector<double> weights;
   for (size_t s = 0; s < prior.scales.size(); ++s)
     for (size_t k = 0; k < kinds_.size(); ++k)
-      for (int wrong = 0; wrong < kWays; ++wrong) {
+      for (int wrong = 0; wrong < int(moves_.size()); ++wrong) {
         parts.push_back({s, k, wrong});
         weights.push_back(std::log(prior.weights[s]) +
                           log_evidence(prior.scales[s], wrong, kinds_[k]));
@@ -179,30 +200,42 @@ DeviationMixture PieceLikelihood::errors() const {
   for (const Kind& kind : kinds_) {
     DeviationModel m = measured_;
     m.mean.setZero();
-    m.modes *= kind.factor;
+    m.modes.leftCols(m.modes.cols() - stated_) *= kind.size;
     out.parts.push_back(m);
     out.weights.push_back(kind.share);
   }
   return out;
 }
 
-double number_log_evidence(double off, double sigma, double wide, double tail_share, double scale) {
-  const double narrow = log_normal(off, scale * scale + sigma * sigma);
-  if (!(tail_share > 0)) return narrow;
-  return log_sum(
-      {std::log1p(-tail_share) + narrow,
-       std::log(tail_share) + log_normal(off, scale * scale + std::pow(wide * sigma, 2))});
+namespace {
+
+// Variances of the error, by size.
+ErrorShares variances(const NumberError& error) {
+  ErrorShares out = sizes_of(error.shares);
+  for (double& v : out) v = std::pow(v * error.sigma, 2) + error.stated * error.stated;
+  return out;
 }
 
-double number_probability(double off, double sigma, double wide, double tail_share, double half,
+}  // namespace
+
+double number_log_evidence(double off, const NumberError& error, double scale) {
+  std::vector<double> logs;
+  const ErrorShares variance = variances(error);
+  for (size_t k = 0; k < variance.size(); ++k)
+    if (error.shares[k] > 0)
+      logs.push_back(std::log(error.shares[k]) + log_normal(off, scale * scale + variance[k]));
+  return log_sum(logs);
+}
+
+double number_probability(double off, const NumberError& error, double half,
                           const DeviationPrior& prior) {
   std::vector<double> weights, within;
+  const ErrorShares variance = variances(error);
   for (size_t s = 0; s < prior.scales.size(); ++s)
-    for (const double factor : {1.0, wide}) {
-      const double share = factor == 1 ? 1 - tail_share : tail_share;
-      if (!(share > 0)) continue;
-      const double t2 = prior.scales[s] * prior.scales[s], s2 = std::pow(factor * sigma, 2);
-      weights.push_back(std::log(share * prior.weights[s]) + log_normal(off, t2 + s2));
+    for (size_t k = 0; k < variance.size(); ++k) {
+      if (!(error.shares[k] > 0)) continue;
+      const double t2 = prior.scales[s] * prior.scales[s], s2 = variance[k];
+      weights.push_back(std::log(error.shares[k] * prior.weights[s]) + log_normal(off, t2 + s2));
       within.push_back(
           interval_probability(off * t2 / (t2 + s2), std::sqrt(t2 * s2 / (t2 + s2)), half));
     }

@@ -39,15 +39,15 @@ DeviationPrior learn_prior(const DeviationPrior& vague,
 Eigen::MatrixXd rigid_deviations(const std::vector<EdgePlace>& places);
 
 /// The likelihood of the true deviation of a piece of an edge, from what was measured. Of what was
-/// measured, that which a small similarity explains is held against the prior; the rest, a wave,
-/// stays as it was measured. A scale is that of the whole similarity, or of its shift, turn or
-/// growth alone (a hole in the wrong place, a bore of the wrong size), and an eighth of that for
-/// the rest.
+/// measured, that which a small similarity explains is held against the prior. A scale is that of
+/// the whole similarity, or of its shift, turn or growth alone (a hole in the wrong place, a bore
+/// of the wrong size); what of it does not deviate so has the least scale. The rest, a wave, is
+/// shrunk by the size of its errors (James & Stein 1961); of a stroke that is of a simpler kind
+/// than the edge, it says nothing.
 class PieceLikelihood {
  public:
-  /// `rigid`: rigid_deviations(); `floor`: standard deviation that is always added.
-  PieceLikelihood(const PieceErrors& errors, double tail_share, const Eigen::MatrixXd& rigid,
-                  double floor);
+  /// `rigid`: rigid_deviations(). A hundredth of the tolerance is always added to the errors.
+  PieceLikelihood(const PieceErrors& errors, const Eigen::MatrixXd& rigid, double tolerance);
 
   /// Of what was measured, up to a constant, if true deviations have this scale.
   double log_evidence(double scale) const;
@@ -59,29 +59,35 @@ class PieceLikelihood {
   DeviationMixture errors() const;
 
  private:
-  struct Kind {  // of errors: as a rule, and in the tail
-    double factor, share;
+  struct Kind {  // of errors, by size
+    double size, share;
     Eigen::MatrixXd covariance;  // K x K
   };
   static constexpr int kWays = 4;  // to be wrong: in all, place, direction, size
   double log_evidence(double scale, int wrong, const Kind& kind) const;
   DeviationModel posterior(double scale, int wrong, const Kind& kind) const;
 
+  Eigen::MatrixXd prior_moves(double scale, int wrong) const;  // K x M
+
   DeviationModel measured_;
-  double wide_;
-  Eigen::MatrixXd basis_;   // 2 P x K, orthonormal: of rigid deviations
-  std::vector<Eigen::MatrixXd> shapes_;  // K x K: their covariance at scale 1, by way
-  Eigen::VectorXd rigid_;   // K: of what was measured
-  Eigen::VectorXd wave_;    // 2 P: the rest
-  Eigen::MatrixXd others_;  // 2 P x M: modes of errors, as far as they are waves
+  int stated_;                          // of its modes, see PieceErrors
+  Eigen::MatrixXd basis_;               // 2 P x K, orthonormal: of rigid deviations
+  std::vector<Eigen::MatrixXd> moves_;  // K x M: what may deviate, by way; at scale 1
+  Eigen::MatrixXd little_;              // K x 7: what of the similarity always may
+  Eigen::VectorXd known_;               // K: of what was measured
+  Eigen::VectorXd wave_;                // 2 P: of the rest, what errors do not explain
   std::vector<Kind> kinds_;
 };
 
 /// The same of a number: log evidence, and the probability that it lies within +- half of nominal.
-/// `off`: as measured less nominal; `sigma`: standard deviation of its error, `wide` times that in
-/// tails.
-double number_log_evidence(double off, double sigma, double wide, double tail_share, double scale);
-double number_probability(double off, double sigma, double wide, double tail_share, double half,
+/// `off`: as measured less nominal.
+struct NumberError {
+  double sigma = 0;  ///< standard deviation of the error, of sizes with these shares
+  ErrorShares shares = {};
+  double stated = 0;  ///< of another error, which is normal
+};
+double number_log_evidence(double off, const NumberError& error, double scale);
+double number_probability(double off, const NumberError& error, double half,
                           const DeviationPrior& prior);
 
 }  // namespace sketchsplat

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 SigmaModel plain() {
   SigmaModel sigma;  // without a footprint: covariances as they are
-  sigma.options.tail_share = 0;
+  without_tails(&sigma.options);
   return sigma;
 }
 

@@ -180,9 +180,9 @@ TEST(Tube, BoundsEncloseDrawsOfTheControlPointsOfAThousandStrokes) {
     const Association a = associate(c.measured, nominal, {});
     ASSERT_EQ(a.edges[0].presence, Presence::kFound) << i;
     const bool straight = c.nominal.strokes[0].kind == StrokeKind::kLine;
-    DeviationModel model =
-        piece_errors(c.measured, places_beside(a.edges[0], 0, straight ? 2 : 13), true, plain)
-            .model;
+    DeviationModel model = piece_errors(c.measured, places_beside(a.edges[0], 0, straight ? 2 : 13),
+                                        c.nominal.strokes[0].kind, true, plain)
+                               .model;
     model.between = straight ? 1 : 0.95;
     TubeProbability within;
     bound_tube({one(model)}, c.tolerance, &within);
