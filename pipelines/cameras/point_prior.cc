@@ -63,34 +63,38 @@ std::vector<int> columns_of(const CameraUnknowns& cameras, const SightTerm& term
   return columns;
 }
 
-// Of a point: the sum of its sights, less what moving it explains.
+// Of a point: the sum of its sights, less what moving it explains. A sight knows one camera: blocks
+// of few columns are added, and only what goes through the point couples all cameras that see it.
 void add_point(const CameraUnknowns& cameras, const std::vector<SightTerm>& terms, double sigma,
                CameraQuadratic* sum) {
+  std::vector<std::vector<int>> columns;
   std::vector<int> used;
-  for (const SightTerm& term : terms)
-    for (const int column : columns_of(cameras, term)) used.push_back(column);
+  for (const SightTerm& term : terms) {
+    columns.push_back(columns_of(cameras, term));
+    used.insert(used.end(), columns.back().begin(), columns.back().end());
+  }
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   const int n = int(used.size());
-  MatrixXd hessian = MatrixXd::Zero(n, n), cross = MatrixXd::Zero(3, n);
-  VectorXd gradient = VectorXd::Zero(n);
+  Eigen::Matrix3Xd cross = Eigen::Matrix3Xd::Zero(3, n);
   Matrix3d A = Matrix3d::Zero();
   Vector3d b = Vector3d::Zero();
-  for (const SightTerm& term : terms) {
+  for (size_t k = 0; k < terms.size(); ++k) {
+    const SightTerm& term = terms[k];
     const double r2 = term.residual.squaredNorm() / std::pow(kBiweight * sigma, 2);
     if (!(r2 < 1)) continue;
     const double weight = std::pow((1 - r2) / sigma, 2);
-    const std::vector<int> columns = columns_of(cameras, term);
-    MatrixXd J = MatrixXd::Zero(2, n);
-    for (size_t i = 0; i < columns.size(); ++i) {
-      const auto at = std::lower_bound(used.begin(), used.end(), columns[i]) - used.begin();
-      constexpr size_t kPose = CameraUnknowns::kPose;
-      if (i < kPose) J.col(at) = term.by.pose.col(Eigen::Index(i));
-      else J.col(at) = term.by.shared.col(Eigen::Index(i - kPose));
+    const int c = int(columns[k].size());
+    Eigen::Matrix2Xd J(2, c);
+    J << term.by.pose, term.by.shared.leftCols(c - CameraUnknowns::kPose);
+    const Eigen::Matrix3Xd through = weight * term.by.point.transpose() * J;
+    for (int i = 0; i < c; ++i) {
+      const auto at = std::lower_bound(used.begin(), used.end(), columns[k][i]) - used.begin();
+      cross.col(at) += through.col(i);
+      sum->gradient[columns[k][i]] += weight * J.col(i).dot(term.residual);
+      for (int j = 0; j < c; ++j)
+        sum->information(columns[k][i], columns[k][j]) += weight * J.col(i).dot(J.col(j));
     }
-    hessian += weight * J.transpose() * J;
-    cross += weight * term.by.point.transpose() * J;
-    gradient += weight * J.transpose() * term.residual;
     A += weight * term.by.point.transpose() * term.by.point;
     b += weight * term.by.point.transpose() * term.residual;
   }
@@ -98,13 +102,12 @@ void add_point(const CameraUnknowns& cameras, const std::vector<SightTerm>& term
   Matrix3d inverse = Matrix3d::Zero();
   for (int k = 0; k < 3; ++k)
     if (es.eigenvalues()[k] > kRank * es.eigenvalues()[2])
-      inverse += es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() /
-                 es.eigenvalues()[k];
-  hessian -= cross.transpose() * inverse * cross;
-  gradient -= cross.transpose() * (inverse * b);
-  for (int i = 0; i < n; ++i) {
-    sum->gradient[used[i]] += gradient[i];
-    for (int j = 0; j < n; ++j) sum->information(used[i], used[j]) += hessian(i, j);
+      inverse +=
+          es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() / es.eigenvalues()[k];
+  for (int j = 0; j < n; ++j) {
+    const Vector3d moved = inverse * cross.col(j);
+    sum->gradient[used[j]] -= moved.dot(b);
+    for (int i = 0; i < n; ++i) sum->information(used[i], used[j]) -= cross.col(i).dot(moved);
   }
 }
 
