@@ -280,6 +280,8 @@ def reliability(title, rows):
 
 
 def report(condition, scenes, binary, options, draws):
+    """The tables of one condition; its rows by name."""
+    out = {}
     of = [s for s in scenes if s.condition == condition]
     for name, ask in [("known", lambda s: known_edges(s, binary, options)),
                       ("within", lambda s: judged_edges(s, binary, options, draws))]:
@@ -289,6 +291,8 @@ def report(condition, scenes, binary, options, draws):
             reliability(f"{name}, {condition}, tolerance {1000 * tolerance:g} thousandths",
                         [r for r in everything if r[0] == tolerance])
         reliability(f"{name}, {condition}, all", everything)
+        out[name] = everything
+    return out
 
 
 def main():
@@ -325,8 +329,10 @@ def main():
         with open(path, "w") as file:
             json.dump({n: round(v, 4) for n, v in best.items()}, file, indent=1)
         options = ["--calibration", path]
-    for condition in conditions:
-        report(condition, scenes, binary, options, arguments.draws)
+    of_all = [report(condition, scenes, binary, options, arguments.draws)
+              for condition in conditions]
+    for name in ("known", "within"):
+        reliability(f"{name}, all conditions", [row for of in of_all for row in of[name]])
 
 
 if __name__ == "__main__":

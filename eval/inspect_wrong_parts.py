@@ -3,10 +3,10 @@
 """Does `inspect` find what is wrong, and nothing else?
 
 Of each of some plates with holes (`--param hole-shift=0.001 --param bore-error=2`: one hole moved
-by a thousandth of the longest side, the bore 2 % too large), small scenes (24 views of 400 x 400
-px) are made and reconstructed; the plate without errors is the nominal part. A plate is right if
-the four circles of the moved hole and of the bore are out and no other edge, and no dimension
-between others, is; undecided is right for these. They are reconstructed without regularities, which
+by a thousandth of the longest side, the bore 2 % too large), scenes of 50 pictures are made and
+reconstructed; the plate without errors is the nominal part. A plate is right if the four circles of
+the moved hole and of the bore are out and no other edge, and no dimension between others, is;
+undecided is right for these. They are reconstructed without regularities, which
 make of one hole in the wrong place four that are a little wrong. Scenes and results that are there
 already are used again.
 
@@ -22,7 +22,7 @@ import time
 
 import numpy as np
 
-VIEWS = "--views 50 --resolution 1600 --noise 3 --outputs none -q".split()
+VIEWS = "--views 50 --noise 3 --outputs none -q".split()
 WRONG = ["--param", "hole-shift=0.001", "--param", "bore-error=2"]
 
 
@@ -51,7 +51,7 @@ def wrong_edges(truth, made):
     return wrong
 
 
-def inspect_plate(binary, work, seed, tolerance):
+def inspect_plate(binary, work, seed, resolution, tolerance):
     """Names of edges that are out and should not be, and that should be and are not; seconds."""
     nominal, scene, result = (f"{work}/{kind}/{seed}" for kind in ("nominal", "scenes", "results"))
     part = ["synthesize", "plate-holes", "--seed", str(seed), "--out"]
@@ -59,7 +59,7 @@ def inspect_plate(binary, work, seed, tolerance):
         run([binary] + part + [nominal, "--views", "1", "--resolution", "16", "--outputs", "none",
                                "-q"])
     if not os.path.exists(scene + "/meta_data.json"):
-        run([binary] + part + [scene] + VIEWS + WRONG)
+        run([binary] + part + [scene, "--resolution", str(resolution)] + VIEWS + WRONG)
     if not os.path.exists(result + "/sketch.json"):
         run([binary, "reconstruct", scene, "--out", result, "-q", "--overlays", "0",
              "--without", "regularize"])
@@ -85,12 +85,13 @@ def main():
     parser.add_argument("--binary", required=True)
     parser.add_argument("--work", required=True, help="folder of scenes and results")
     parser.add_argument("--seeds", type=int, default=30)
+    parser.add_argument("--resolution", type=int, default=1600, help="of the pictures, px")
     parser.add_argument("--tolerance", type=float, default=0.0005, help="of the longest side")
     arguments = parser.parse_args()
     right, slowest = 0, 0
     for seed in range(1, arguments.seeds + 1):
-        false_alarms, missed, seconds = inspect_plate(arguments.binary, arguments.work, seed,
-                                                      arguments.tolerance)
+        false_alarms, missed, seconds = inspect_plate(
+            arguments.binary, arguments.work, seed, arguments.resolution, arguments.tolerance)
         slowest = max(slowest, seconds)
         right += not false_alarms and not missed
         if false_alarms or missed:

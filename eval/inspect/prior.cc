@@ -19,9 +19,8 @@ constexpr double kEachCounts = 0.1;    // things that each scale has been seen i
 constexpr int kRounds = 200;           // of the EM algorithm
 constexpr double kLeastWeight = 1e-4;  // of a part of a mixture
 constexpr double kLeastRigid = 1e-6;  // of singular values: turns of a line about itself do nothing
-constexpr double kUnmodelled =
-    0.7;                         // of the errors, in every direction: shapes are not known better
-constexpr double kFloor = 0.01;  // [tolerances] of errors: better is not told apart
+constexpr double kUnmodelled = 0.7;   // of the errors, in each direction: shapes may be others
+constexpr double kFloor = 0.01;       // [tolerances] of errors: better is not told apart
 
 double log_sum(const std::vector<double>& logs) {
   const double most = *std::max_element(logs.begin(), logs.end());

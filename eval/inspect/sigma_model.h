@@ -45,13 +45,10 @@ struct SigmaOptions {
       0.375, 1.6, 1.92, 0.05, {0.147, 0.212, 0.321, 0.24, 0.063, 0.01, 0.004, 0.002, 0.001}};
   OfKind arc = {
       0.7273, 0.48, 0.1, 0.06, {0.009, 0.017, 0.035, 0.162, 0.528, 0.204, 0.027, 0.009, 0.009}};
+  /// Cubics, arcs of ellipses.
   OfKind free = {
-      2,
-      0.6,
-      0.1,
-      0.06,
-      {0.007, 0.015, 0.083, 0.408, 0.429, 0.042, 0.008, 0.005, 0.003}};  // cubics, arcs of ellipses
-  double place_px = 0.0008;                                              ///< [px] and always
+      2, 0.6, 0.1, 0.06, {0.007, 0.015, 0.083, 0.408, 0.429, 0.042, 0.008, 0.005, 0.003}};
+  double place_px = 0.0008;  ///< [px] and always
   /// [px^2] over the radius of curvature [px]: by so much a curve lies nearer to its centre of
   /// curvature, because blurred edges do, and the standard deviation of that.
   double curvature_px2 = 0.25, curvature_sigma_px2 = 1.25;
