@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "pipelines/cameras/eliminate.h"
 #include "pipelines/cameras/halves.h"
@@ -26,7 +25,6 @@ constexpr int kPose = CameraUnknowns::kPose, kShared = CameraUnknowns::kMostShar
 
 constexpr double kLeastSigma = 0.05;  // [px] of an edgel, and of a stroke in a view
 constexpr double kBiweight = 4.685;   // standard deviations: 95 % efficient
-constexpr double kLeastRadius = 8;    // [px] of the object's image
 
 // One edgel that a stroke was matched with.
 struct Row {
@@ -42,28 +40,6 @@ struct Linear {
   Matrix<double, kPose, 1> pose = Matrix<double, kPose, 1>::Zero();
   Matrix<double, kShared, 1> shared = Matrix<double, kShared, 1>::Zero();
 };
-
-// Root mean square distance of the samples' images from that of the middle, in each view.
-std::vector<double> image_radii(const Observation& o, const EdgeWorld& world,
-                                const Vector3d& middle) {
-  std::vector<double> sum(world.views.size()), count(world.views.size()), radius, known;
-  for (const SampleMatch& m : o.matches.matches) {
-    double depth;
-    const View& view = world.views[m.view];
-    sum[m.view] +=
-        (view.project(o.samples.position.col(m.sample), &depth) - view.project(middle, &depth))
-            .squaredNorm();
-    ++count[m.view];
-  }
-  for (size_t v = 0; v < sum.size(); ++v) {
-    radius.push_back(count[v] > 0 ? std::max(kLeastRadius, std::sqrt(sum[v] / count[v])) : 0);
-    if (count[v] > 0) known.push_back(radius[v]);
-  }
-  const double usual = std::max(kLeastRadius, median(known));
-  for (double& r : radius)
-    if (!(r > 0)) r = usual;
-  return radius;
-}
 
 class System {
  public:
@@ -91,7 +67,6 @@ class System {
   State step() const;
   double offset_px() const;
   double scale_sigma() const;
-  Sketch meet(const Sketch& joined) const;
   std::vector<double> distances() const;
 
   const SampleLayout& layout_;
@@ -352,29 +327,6 @@ void System::solve(int steps) {
   }
 }
 
-// Strokes that share a node meet half-way between where they would end.
-Sketch System::meet(const Sketch& joined) const {
-  Sketch out = joined;
-  std::vector<int> ends(joined.nodes.cols());
-  out.nodes.setZero();
-  const auto add = [&](int node, const Vector3d& place) {
-    out.nodes.col(node) += place;
-    ++ends[node];
-  };
-  for (int s = 0; s < joined.size(); ++s) {
-    const Stroke& stroke = joined.strokes[s];
-    const ControlPoints& c = now_.strokes[s];
-    const bool closed = is_closed(stroke.kind);
-    for (int h = 0; h < num_handles(stroke.kind); ++h)
-      out.handles.col(stroke.handle + h) = c.p[h + !closed];
-    if (!closed) add(stroke.begin, c.p[0]), add(stroke.end, c.p[c.count - 1]);
-  }
-  for (int n = 0; n < int(ends.size()); ++n)
-    out.nodes.col(n) =
-        ends[n] ? Vector3d(out.nodes.col(n) / ends[n]) : Vector3d(joined.nodes.col(n));
-  return out;
-}
-
 CameraEvidence System::evidence() {
   std::vector<Linear> rows;
   linearise(&rows);
@@ -410,7 +362,7 @@ CameraEvidence System::evidence() {
 CameraFit System::result(const Sketch& joined) {
   CameraFit out;
   out.views = cameras_.current();
-  out.sketch = meet(joined);
+  out.sketch = with_control_points(joined, now_.strokes);
   out.scatter_px = scatter_, out.before_px = before_, out.after_px = offset_px();
   out.offsets = offsets_, out.unknowns = cameras_.size();
   out.radius_px = radius_;

@@ -6,11 +6,14 @@
 #include <cmath>
 
 #include "datasets/readers/colmap_write.h"
+#include "datasets/types/median.h"
 
 namespace sketchsplat {
 namespace {
 
 using Terms = Lens::Terms;
+
+constexpr double kLeastRadius = 8;  // [px] of the object's image
 
 double Terms::*const kTerms[] = {&Terms::k1, &Terms::k2, &Terms::p1, &Terms::p2,
                                  &Terms::k3, &Terms::k4, &Terms::k5, &Terms::k6};
@@ -18,12 +21,18 @@ double Terms::*const kTerms[] = {&Terms::k1, &Terms::k2, &Terms::p1, &Terms::p2,
 /// Terms that a model has: the first so many of COLMAP's order.
 std::vector<int> terms_of(LensModel model) {
   switch (model) {
-    case LensModel::kPinhole: return {};
-    case LensModel::kSimpleRadial: return {0};
-    case LensModel::kRadial: return {0, 1};
-    case LensModel::kOpencv: return {0, 1, 2, 3};
-    case LensModel::kFullOpencv: return {0, 1, 2, 3, 4, 5, 6, 7};
-    case LensModel::kOpencvFisheye: return {0, 1, 4, 5};
+    case LensModel::kPinhole:
+      return {};
+    case LensModel::kSimpleRadial:
+      return {0};
+    case LensModel::kRadial:
+      return {0, 1};
+    case LensModel::kOpencv:
+      return {0, 1, 2, 3};
+    case LensModel::kFullOpencv:
+      return {0, 1, 2, 3, 4, 5, 6, 7};
+    case LensModel::kOpencvFisheye:
+      return {0, 1, 4, 5};
   }
   return {};
 }
@@ -47,6 +56,27 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 }
 
 }  // namespace
+
+std::vector<double> image_radii(const Observation& o, const EdgeWorld& world,
+                                const Eigen::Vector3d& middle) {
+  std::vector<double> sum(world.views.size()), count(world.views.size()), radius, known;
+  for (const SampleMatch& m : o.matches.matches) {
+    double depth;
+    const View& view = world.views[m.view];
+    sum[m.view] +=
+        (view.project(o.samples.position.col(m.sample), &depth) - view.project(middle, &depth))
+            .squaredNorm();
+    ++count[m.view];
+  }
+  for (size_t v = 0; v < sum.size(); ++v) {
+    radius.push_back(count[v] > 0 ? std::max(kLeastRadius, std::sqrt(sum[v] / count[v])) : 0);
+    if (count[v] > 0) known.push_back(radius[v]);
+  }
+  const double usual = std::max(kLeastRadius, median(known));
+  for (double& r : radius)
+    if (!(r > 0)) r = usual;
+  return radius;
+}
 
 CameraUnknowns::CameraUnknowns(const std::vector<View>& stated, const Eigen::Vector3d& middle,
                                const std::vector<double>& radius_px, const CameraPrior& prior)
@@ -180,11 +210,16 @@ bool CameraUnknowns::image(int v, const Eigen::Vector3d& point, Eigen::Vector2d*
   for (int i = first_[k]; i < first_[k + 1]; ++i) {
     auto column = out->shared.col(i - first_[k]);
     const int what = intrinsic_[i];
-    if (what == kFocal) column = stated.cwiseProduct(drawn);
-    else if (what == kAspect) column << stated.x() * drawn.x(), -stated.y() * drawn.y();
-    else if (what == kCentreX) column << 1, 0;
-    else if (what == kCentreY) column << 0, 1;
-    else column = terms.col(what - kTerm);
+    if (what == kFocal)
+      column = stated.cwiseProduct(drawn);
+    else if (what == kAspect)
+      column << stated.x() * drawn.x(), -stated.y() * drawn.y();
+    else if (what == kCentreX)
+      column << 1, 0;
+    else if (what == kCentreY)
+      column << 0, 1;
+    else
+      column = terms.col(what - kTerm);
     column *= unit_[i];
   }
   return true;

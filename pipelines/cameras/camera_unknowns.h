@@ -5,17 +5,23 @@
 #include <vector>
 
 #include "datasets/types/view.h"
+#include "pipelines/survey/observe.h"
 
 namespace sketchsplat {
 
 /// How far off stated cameras may be: standard deviations.
 struct CameraPrior {
-  double pose_px = 1;       ///< by which each of six ways to move a view shifts the object's image
-  double focal = 0.01;  ///< relative; a tenth of it for the ratio of fx and fy where they differ
-  double centre = 0.004;    ///< of the principal point, in image widths
-  double lens_px = 2;       ///< by which a term of the distortion moves the corner of the image
-  bool shared = true;       ///< false: focal length, centre and lens are as stated
+  double pose_px = 1;     ///< by which each of six ways to move a view shifts the object's image
+  double focal = 0.01;    ///< relative; a tenth of it for the ratio of fx and fy where they differ
+  double centre = 0.004;  ///< of the principal point, in image widths
+  double lens_px = 2;     ///< by which a term of the distortion moves the corner of the image
+  bool shared = true;     ///< false: focal length, centre and lens are as stated
 };
+
+/// [px] Root mean square distance of the matched samples' images from that of the middle of the
+/// object (world), in each view; the median of the others in views without a match.
+std::vector<double> image_radii(const Observation& observation, const EdgeWorld& world,
+                                const Eigen::Vector3d& middle);
 
 /// Cameras as unknowns of least squares: six per view about a point of the object, and of each
 /// shared camera what its lens has. All of them are measured in pixels by which they move the

@@ -88,6 +88,28 @@ ControlPoints control_points(const Sketch& sketch, int stroke) {
   return c;
 }
 
+Sketch with_control_points(const Sketch& sketch, const std::vector<ControlPoints>& controls) {
+  Sketch out = sketch;
+  std::vector<int> ends(sketch.nodes.cols());
+  out.nodes.setZero();
+  const auto add = [&](int node, const Eigen::Vector3d& place) {
+    out.nodes.col(node) += place;
+    ++ends[node];
+  };
+  for (int s = 0; s < sketch.size(); ++s) {
+    const Stroke& stroke = sketch.strokes[s];
+    const ControlPoints& c = controls[s];
+    const bool closed = is_closed(stroke.kind);
+    for (int h = 0; h < num_handles(stroke.kind); ++h)
+      out.handles.col(stroke.handle + h) = c.p[h + !closed];
+    if (!closed) add(stroke.begin, c.p[0]), add(stroke.end, c.p[c.count - 1]);
+  }
+  for (int n = 0; n < int(ends.size()); ++n)
+    out.nodes.col(n) = ends[n] ? Eigen::Vector3d(out.nodes.col(n) / ends[n])
+                               : Eigen::Vector3d(sketch.nodes.col(n));
+  return out;
+}
+
 std::vector<int> node_degrees(const Sketch& sketch) {
   std::vector<int> degree(sketch.nodes.cols());
   for (const Stroke& s : sketch.strokes)

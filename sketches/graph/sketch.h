@@ -89,6 +89,9 @@ struct ControlPoints {
   int count = 0;
 };
 ControlPoints control_points(const Sketch& sketch, int stroke);
+/// The sketch with these control points, one set per stroke: strokes that share a node meet
+/// half-way between where they would end.
+Sketch with_control_points(const Sketch& sketch, const std::vector<ControlPoints>& controls);
 
 /// Of every node, how many ends of strokes lie in it.
 std::vector<int> node_degrees(const Sketch& sketch);

@@ -23,6 +23,23 @@ TEST(Validate, HasNothingToSayAboutASoundSketch) {
   EXPECT_THAT(validate(Sketch()), IsEmpty());
 }
 
+TEST(ControlPoints, ThoseOfASketchMakeItAgainAndStrokesMeetHalfWay) {
+  const Sketch before = five_kinds();
+  std::vector<ControlPoints> controls;
+  for (int s = 0; s < before.size(); ++s) controls.push_back(control_points(before, s));
+  const Sketch same = with_control_points(before, controls);
+  EXPECT_TRUE(same.nodes.isApprox(before.nodes));
+  EXPECT_TRUE(same.handles.isApprox(before.handles));
+  Sketch corner;
+  for (const double x : {0.0, 1.0, 2.0}) corner.add_node({x, 0, 0});
+  corner.add_stroke(StrokeKind::kLine, 0, 1, {});
+  corner.add_stroke(StrokeKind::kLine, 1, 2, {});
+  controls = {control_points(corner, 0), control_points(corner, 1)};
+  controls[0].p[1].y() = 1;
+  EXPECT_TRUE(
+      with_control_points(corner, controls).nodes.col(1).isApprox(Eigen::Vector3d(1, 0.5, 0)));
+}
+
 TEST(AppendStrokes, KeepsBothSketchesAsTheyWere) {
   Sketch both = five_kinds();
   const Sketch more = all_kinds();
