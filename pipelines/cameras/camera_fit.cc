@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "pipelines/cameras/eliminate.h"
 #include "pipelines/cameras/halves.h"
