@@ -178,8 +178,11 @@ ImageSize read_image_size(const std::string& path) {
   size_t size = 0;
   const File file = open_image(path, &size);
   ImageSize found;
+  if (is_jpeg(file.get())) {
+    if (jpeg_size(file.get(), &found.width, &found.height)) return found;
+    throw InputError(path, "a whole JPEG image", "a broken one (no header)");
+  }
   if (!is_png(file.get())) {
-    if (is_jpeg(file.get()) && jpeg_size(file.get(), &found.width, &found.height)) return found;
     const Planes planes = read_by_plugin(path, true);
     return {planes.width, planes.height};
   }

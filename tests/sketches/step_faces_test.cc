@@ -150,6 +150,15 @@ TEST(StepFaces, NeedAClosedLoopInAPlane) {
   EXPECT_TRUE(planar_faces(bent).empty());
 }
 
+// Most of either is inside of the other.
+TEST(StepFaces, RoundsThatCrossEachOtherAreNoReasonToTurnForEver) {
+  Sketch s;
+  for (const double side : {1.0, -1.0})
+    s.add_stroke(StrokeKind::kEllipse, -1, -1,
+                 {Vector3d(0.01 * side, 0, 0), Vector3d(side, 0, 0), Vector3d(0, 1, 0)});
+  EXPECT_LE(planar_faces(s).size(), 2u);
+}
+
 TEST(StepDocument, CarriesNamesAndColoursByKind) {
   const Document d = read(five_kinds(), {"part", 50});
   std::map<std::string, std::set<std::string>> colours;

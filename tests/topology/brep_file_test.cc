@@ -17,6 +17,7 @@
 #include <map>
 #include <sstream>
 
+#include "datasets/step/read_step_shape.h"
 #include "datasets/types/errors.h"
 #include "gmock/gmock.h"
 #include "tests/topology/solids.h"
@@ -174,6 +175,43 @@ TEST(BrepFile, IsNotThereIfTheSolidIsRefused) {
   EXPECT_FALSE(write_solid_step(solid, path).valid);
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_THROW(write_solid_step(sphere_solid(), "/nowhere/at/all/solid.step"), OutputError);
+}
+
+TEST(StepFile, WhatIsWrittenIsReadTheSameThroughTheChild) {
+  const std::string path = file_name();
+  ASSERT_TRUE(write_solid_step(plate_with_hole(0.5), path).valid);
+  const TopoDS_Shape shape = read_step_shape(path);
+  const Reread direct = reread(path);
+  Reread child;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next())
+    ++child.faces[BRepAdaptor_Surface(TopoDS::Face(it.Current())).GetType()];
+  EXPECT_EQ(child.faces, direct.faces);
+  GProp_GProps volume;
+  BRepGProp::VolumeProperties(shape, volume);
+  EXPECT_EQ(volume.Mass(), direct.volume);  // to the last bit
+}
+
+std::string refusal(const std::string& text) {
+  const std::string path = file_name();
+  std::ofstream(path) << text;
+  try {
+    read_step_shape(path);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Open CASCADE steps on a null pointer.
+TEST(StepFile, EntitiesThatAreNotThereAreRefusedInOneLine) {
+  const std::string path = file_name();
+  ASSERT_TRUE(write_solid_step(plate_with_hole(0.5), path).valid);
+  std::string text = read(path);
+  const size_t entity = text.find("= VECTOR('',#"), number = text.find('#', entity),
+               end = text.find(',', number);
+  ASSERT_NE(entity, std::string::npos);
+  text.replace(number, end - number, "#99999");
+  EXPECT_THAT(refusal(text), HasSubstr("crashes on"));
 }
 
 }  // namespace

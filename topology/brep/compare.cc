@@ -6,10 +6,6 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
-#include <Message_Printer.hxx>
-#include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <Standard_OutOfMemory.hxx>
 #include <TopExp_Explorer.hxx>
@@ -21,6 +17,7 @@
 #include <new>
 #include <vector>
 
+#include "datasets/step/read_step_shape.h"
 #include "datasets/types/errors.h"
 #include "topology/brep/check.h"
 #include "topology/brep/meshed_face.h"
@@ -43,16 +40,9 @@ constexpr double kHuge = std::numeric_limits<double>::max();
 
 // All solids of a file.
 TopoDS_Shape read_solids(const std::string& path) {
-  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
-  STEPControl_Reader reader;
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
-    throw InputError(path, "a STEP file", "something else");
-  reader.TransferRoots();
-  const TopoDS_Shape all = reader.OneShape();
+  const TopoDS_Shape all = read_step_shape(path);
   std::vector<TopoDS_Shape> solids;
-  if (!all.IsNull())
-    for (TopExp_Explorer it(all, TopAbs_SOLID); it.More(); it.Next())
-      solids.push_back(it.Current());
+  for (TopExp_Explorer it(all, TopAbs_SOLID); it.More(); it.Next()) solids.push_back(it.Current());
   if (solids.empty()) throw InputError(path, "a solid", "none");
   if (solids.size() == 1) return solids[0];
   TopoDS_Compound compound;

@@ -41,12 +41,13 @@ bool polygons_cross(const Matrix2Xd& p, const Matrix2Xd& q, bool same) {
   return false;
 }
 
-// The smallest counter-clockwise cycle of another part around this one; -1 if there is none.
+// The smallest counter-clockwise cycle of another part around this one, larger than this one; -1 if
+// there is none. Of two parts that cross, each may have most of the other inside.
 int container(const std::vector<Cycle>& cycles, const Cycle& inner) {
   int best = -1;
   for (int i = 0; i < int(cycles.size()); ++i) {
     const Cycle& c = cycles[i];
-    if (c.part == inner.part || c.area <= 0) continue;
+    if (c.part == inner.part || c.area <= -inner.area) continue;
     if (best >= 0 && c.area >= cycles[best].area) continue;
     const int n = int(inner.polygon.cols());
     int inside = 0;
@@ -88,8 +89,9 @@ std::vector<PlanarFace> faces_in_plane(const Sketch& sketch,
     if (c.area <= 0 && !walk_has_inside[c.walk]) around.emplace(c.part, container(cycles, c));
   const auto depth = [&](int part) {
     int count = 0;
-    // Areas grow from part to part, so this ends.
-    for (auto it = around.find(part); it != around.end() && it->second >= 0; ++count)
+    // Areas grow from part to part, so this ends; of strokes that cross they need not.
+    auto it = around.find(part);
+    for (; it != around.end() && it->second >= 0 && count < int(cycles.size()); ++count)
       it = around.find(cycles[it->second].part);
     return count;
   };

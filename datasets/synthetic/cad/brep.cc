@@ -10,12 +10,7 @@
 #include <Bnd_Box.hxx>
 #include <Eigen/Geometry>
 #include <GProp_GProps.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
-#include <Message_Printer.hxx>
 #include <Poly_Triangulation.hxx>
-#include <STEPControl_Reader.hxx>
-#include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
@@ -23,35 +18,15 @@
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
 #include <cmath>
-#include <fstream>
 
+#include "datasets/step/read_step_shape.h"
 #include "datasets/types/errors.h"
-#include "sketches/io/whole_file.h"
 
 namespace sketchsplat {
 
 Brep read_step(const std::string& path) {
-  std::ifstream file(path);
-  check_length(&file, path);
-  std::string magic(13, '\0');
-  if (!file.read(&magic[0], 13))
-    throw InputError(path, "a STEP file", file.is_open() ? "too few bytes" : "no readable file");
-  if (magic != "ISO-10303-21;")
-    throw InputError(path, "a STEP file (ISO-10303-21)", "another kind");
-
-  // The reader reports to the terminal; ours is the caller's.
-  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
-  TopoDS_Shape shape;
-  try {
-    STEPControl_Reader reader;
-    if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
-      throw InputError(path, "a STEP file", "entities that cannot be read");
-    reader.TransferRoots();
-    shape = reader.OneShape();
-  } catch (const Standard_Failure& failure) {
-    throw InputError(path, "a STEP file", failure.GetMessageString());
-  }
-  if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More())
+  const TopoDS_Shape shape = read_step_shape(path);
+  if (!TopExp_Explorer(shape, TopAbs_FACE).More())
     throw InputError(path, "a shape with faces", "none");
   return {std::make_shared<const TopoDS_Shape>(shape)};
 }
