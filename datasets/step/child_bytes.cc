@@ -15,8 +15,6 @@
 namespace sketchsplat {
 namespace {
 
-enum Status { kDone = 0, kThrew = 1, kNoMemory = 2, kOrphan = 3 };
-
 bool write_all(int fd, const std::string& bytes) {
   for (size_t at = 0; at < bytes.size();) {
     const ssize_t n = write(fd, bytes.data() + at, bytes.size() - at);
@@ -38,18 +36,18 @@ std::string read_all(int fd) {
 [[noreturn]] void be_child(const std::function<std::string()>& work, unsigned seconds, int out,
                            pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(kOrphan);
+  if (getppid() != parent) _exit(ChildBytes::kOrphan);
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGINT, SIGTERM})
     signal(number, SIG_DFL);
   const rlimit cpu = {seconds, seconds}, core = {0, 0};
   setrlimit(RLIMIT_CPU, &cpu);
   setrlimit(RLIMIT_CORE, &core);
   try {
-    _exit(write_all(out, work()) ? kDone : kThrew);
+    _exit(write_all(out, work()) ? ChildBytes::kDone : ChildBytes::kThrew);
   } catch (const std::bad_alloc&) {
-    _exit(kNoMemory);
+    _exit(ChildBytes::kNoMemory);
   } catch (...) {
-    _exit(kThrew);
+    _exit(ChildBytes::kThrew);
   }
 }
 

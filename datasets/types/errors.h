@@ -29,6 +29,8 @@ struct InputError : std::runtime_error {
   InputError(const std::string& path, const std::string& expected, const std::string& found)
       : std::runtime_error(one_line(path) + ": expected " + short_line(expected) + ", found " +
                            short_line(found)) {}
+  /// The line of an InputError that another process has met.
+  explicit InputError(const std::string& line) : std::runtime_error(one_line(line)) {}
 };
 
 /// The scene was read but holds too little to reconstruct. Exit status 4.

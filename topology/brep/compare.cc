@@ -6,17 +6,17 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
-#include <Standard_Failure.hxx>
-#include <Standard_OutOfMemory.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <gp_Trsf.hxx>
 #include <limits>
-#include <new>
+#include <type_traits>
 #include <vector>
 
+#include "datasets/step/guarded.h"
 #include "datasets/step/read_step_shape.h"
 #include "datasets/types/errors.h"
 #include "topology/brep/check.h"
@@ -36,6 +36,7 @@ constexpr double kSpacing = 0.02;     // of places, of the longest side
 constexpr size_t kMostPoints = 1000;  // of the mesh of a face that are places, too
 constexpr int kLeastPlaces = 32;      // of a face
 constexpr double kPlausible = 5e-3;   // between the IoU of a boolean operation and that of lines
+constexpr unsigned kSeconds = 600;    // of CPU
 constexpr double kHuge = std::numeric_limits<double>::max();
 
 // All solids of a file.
@@ -143,25 +144,29 @@ SolidComparison compare(const TopoDS_Shape& solid, const TopoDS_Shape& truth, do
   return out;
 }
 
+SolidComparison compare_files(const std::string& path, const std::string& true_path) {
+  const TopoDS_Shape solid = read_solids(path), truth = read_solids(true_path);
+  const double factor = std::exp2(7 - std::ceil(std::log2(longest_side(truth, true_path))));
+  const TopoDS_Shape large = scaled(truth, factor);
+  SolidComparison out = compare(scaled(solid, factor), large, longest_side(large, true_path));
+  out.volume /= factor * factor * factor;
+  out.true_volume /= factor * factor * factor;
+  for (double* length : {&out.to_truth, &out.from_truth, &out.largest_distance}) *length /= factor;
+  return out;
+}
+static_assert(std::is_trivially_copyable_v<SolidComparison>);
+
 }  // namespace
 
 SolidComparison compare_solids(const std::string& path, const std::string& true_path) {
-  try {
-    const TopoDS_Shape solid = read_solids(path), truth = read_solids(true_path);
-    const double factor = std::exp2(7 - std::ceil(std::log2(longest_side(truth, true_path))));
-    const TopoDS_Shape large = scaled(truth, factor);
-    SolidComparison out = compare(scaled(solid, factor), large, longest_side(large, true_path));
-    out.volume /= factor * factor * factor;
-    out.true_volume /= factor * factor * factor;
-    for (double* length : {&out.to_truth, &out.from_truth, &out.largest_distance})
-      *length /= factor;
-    return out;
-  } catch (const Standard_OutOfMemory&) {
-    throw std::bad_alloc();
-  } catch (const Standard_Failure& failure) {
-    const char* message = failure.GetMessageString();
-    throw InputError(path, "solids that can be compared", message ? message : "others");
-  }
+  // Boolean operations of strangers' solids are no safer than reading them.
+  const std::string bytes = guarded(path, "a solid that can be compared", kSeconds, [&] {
+    const SolidComparison found = compare_files(path, true_path);
+    return std::string(reinterpret_cast<const char*>(&found), sizeof found);
+  });
+  SolidComparison out;
+  std::memcpy(&out, bytes.data(), sizeof out);
+  return out;
 }
 
 }  // namespace sketchsplat

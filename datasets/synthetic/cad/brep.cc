@@ -5,7 +5,6 @@
 #include <BRepBndLib.hxx>
 #include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
-#include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <Eigen/Geometry>
@@ -19,13 +18,15 @@
 #include <TopoDS_Shape.hxx>
 #include <cmath>
 
+#include "datasets/step/guarded.h"
 #include "datasets/step/read_step_shape.h"
 #include "datasets/types/errors.h"
 
 namespace sketchsplat {
 
 Brep read_step(const std::string& path) {
-  const TopoDS_Shape shape = read_step_shape(path);
+  const TopoDS_Shape shape = shape_of(guarded(path, "a STEP file", seconds_to_read(path),
+                                              [&] { return bytes_of(read_step_shape(path)); }));
   if (!TopExp_Explorer(shape, TopAbs_FACE).More())
     throw InputError(path, "a shape with faces", "none");
   return {std::make_shared<const TopoDS_Shape>(shape)};
@@ -123,17 +124,28 @@ const char* type_of(const TopoDS_Face& face) {
   }
 }
 
+// In a child: where edges leave their face, the mesher may turn for ever. Ten times what faces
+// take.
+TopoDS_Shape with_triangles(const TopoDS_Shape& shape, double deflection, const std::string& name) {
+  constexpr double kAngle =
+      0.25;  // [rad] keeps small fillets round; the deflection rules elsewhere
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(shape, TopAbs_FACE, faces);
+  const unsigned seconds = 10 + unsigned(faces.Extent());
+  return shape_of(guarded(name, "faces that can be triangulated", seconds, [&] {
+    BRepMesh_IncrementalMesh(shape, deflection, /*isRelative=*/false, kAngle,
+                             /*isInParallel=*/false);
+    return bytes_of(shape);
+  }));
+}
+
 }  // namespace
 
 SurfaceMesh tessellate(const Brep& brep, const UnitFrame& frame, double deflection,
                        const std::string& name) {
-  constexpr double kAngle =
-      0.25;                       // [rad] keeps small fillets round; the deflection rules elsewhere
-  BRepTools::Clean(*brep.shape);  // what an earlier call left
-  BRepMesh_IncrementalMesh(*brep.shape, deflection / frame.scale, /*isRelative=*/false, kAngle,
-                           /*isInParallel=*/false);
+  const TopoDS_Shape shape = with_triangles(*brep.shape, deflection / frame.scale, name);
   TopTools_IndexedMapOfShape faces;
-  TopExp::MapShapes(*brep.shape, TopAbs_FACE, faces);
+  TopExp::MapShapes(shape, TopAbs_FACE, faces);
   SurfaceMesh mesh;
   int bare = 0;
   // Slivers that no picture shows may stay without triangles.
