@@ -19,18 +19,9 @@
 #include <cmath>
 
 #include "datasets/step/guarded.h"
-#include "datasets/step/read_step_shape.h"
 #include "datasets/types/errors.h"
 
 namespace sketchsplat {
-
-Brep read_step(const std::string& path) {
-  const TopoDS_Shape shape = shape_of(guarded(path, "a STEP file", seconds_to_read(path),
-                                              [&] { return bytes_of(read_step_shape(path)); }));
-  if (!TopExp_Explorer(shape, TopAbs_FACE).More())
-    throw InputError(path, "a shape with faces", "none");
-  return {std::make_shared<const TopoDS_Shape>(shape)};
-}
 
 UnitFrame unit_frame(const Brep& brep, const std::string& name) {
   Bnd_Box box;
@@ -43,8 +34,10 @@ UnitFrame unit_frame(const Brep& brep, const std::string& name) {
   low.array() += box.GetGap();
   high.array() -= box.GetGap();
   const double longest = (high - low).maxCoeff();
-  if (!(longest > 0) || !std::isfinite(longest))
-    throw InputError(name, "a shape with an extent", std::to_string(longest));
+  constexpr double kLargest = 1e100;  // cubes of it overflow
+  if (!(longest > 0) || !(longest < kLargest) || !((low + high).norm() < kLargest))
+    throw InputError(name, "a shape with an extent below 1e100",
+                     longest > 0 ? "a larger one" : std::to_string(longest));
   return {(low + high) / 2, 1.0 / longest, high - low};
 }
 

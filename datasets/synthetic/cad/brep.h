@@ -17,8 +17,10 @@ struct Brep {
   std::shared_ptr<const TopoDS_Shape> shape;
 };
 
-/// Reads every solid, shell and face of a STEP file (AP203, AP214, AP242), in millimetres.
-/// Throws InputError if the file is missing, is no STEP file or holds no face.
+/// Reads every solid, shell and face of a STEP file (AP203, AP214, AP242), in millimetres. What
+/// OpenCASCADE crashes on, here or when it is asked for bounds and edges, is found in a child
+/// process. Throws InputError if the file is missing, is no STEP file, holds no face, or is such a
+/// one.
 Brep read_step(const std::string& path);
 
 /// Model units -> the unit frame: longest side of the bounding box 1, box centred at the origin.

@@ -352,8 +352,9 @@ const PartSpec* find_part(const std::string& name) {
 
 std::string wrong_values(const PartSpec& spec, const PartValues& values) {
   for (const auto& [name, value] : values) {
-    const auto p = std::find_if(spec.parameters.begin(), spec.parameters.end(),
-                                [&](const PartParameter& q) { return q.name == name; });
+    const auto p =
+        std::find_if(spec.parameters.begin(), spec.parameters.end(),
+                     [wanted = name](const PartParameter& q) { return q.name == wanted; });
     const bool known = p != spec.parameters.end();
     const bool whole = !known || p->unit != "count" || value == std::floor(value);
     if (known && whole && value >= p->least && value <= p->most) continue;
