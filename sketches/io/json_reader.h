@@ -43,7 +43,10 @@ class JsonReader {
     if (!j.is_array() || j.size() != 3) fail("three numbers as " + where, summary(j));
     for (const Json& x : j)
       if (!x.is_number()) fail("three numbers as " + where, summary(j));
-    return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
+    const Eigen::Vector3d p(j[0].get<double>(), j[1].get<double>(), j[2].get<double>());
+    constexpr double kLargest = 1e100;  // squares and cubes of it overflow
+    if (!(p.cwiseAbs().maxCoeff() < kLargest)) fail("numbers below 1e100 as " + where, summary(j));
+    return p;
   }
   double number(const Json& object, const char* key, double absent,
                 const std::string& where) const {
