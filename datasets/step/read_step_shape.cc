@@ -37,7 +37,7 @@ TopoDS_Shape read_step_shape(const std::string& path) {
     throw InputError(path, kExpected, "entities that cannot be read");
   reader.TransferRoots();
   const TopoDS_Shape shape = reader.OneShape();
-  if (shape.IsNull()) throw InputError(path, kExpected, "no shape");
+  if (shape.IsNull()) throw InputError(path, "a shape with faces", "none");
   return shape;
 }
 
