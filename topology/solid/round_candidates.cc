@@ -29,8 +29,7 @@ class Finder {
  public:
   Finder(const Sketch& sketch, const std::vector<Matrix3Xd>& polylines,
          const std::vector<ContourLine>& contours, double tolerance)
-      : sketch_(sketch),
-        polylines_(polylines),
+      : polylines_(polylines),
         tolerance_(tolerance),
         extent_(largest_extent(sketch)),
         contours_(contours, tolerance),
@@ -253,7 +252,6 @@ class Finder {
         contours_.touching({cylinder, rim + length / 2 * axis, length + 2 * radius, between}));
   }
 
-  const Sketch& sketch_;
   const std::vector<Matrix3Xd>& polylines_;
   double tolerance_, extent_;
   Contours contours_;  // that nothing explains yet

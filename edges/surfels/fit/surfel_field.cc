@@ -186,7 +186,7 @@ class Trainer {
 
   Eigen::VectorXd rates(double progress) const {
     const double fade = std::pow(0.1, progress);
-    Eigen::VectorXd r(int(SurfelSet::kRows));
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(SurfelSet::kRows);
     r.segment<3>(SurfelSet::kCenter).setConstant(0.03 * field_.spacing * fade);
     r.segment<4>(SurfelSet::kRotation).setConstant(0.015 * fade);
     r.segment<2>(SurfelSet::kLogScale).setConstant(0.015 * fade);
