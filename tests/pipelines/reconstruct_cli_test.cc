@@ -135,6 +135,21 @@ TEST_F(Chain, SketchIsTheSameForAnyNumberOfThreads) {
         << name;
 }
 
+// The mark says that the program need not ask libm for its plain versions: this CPU has no others.
+TEST_F(Chain, SketchIsTheSameOnACpuWithoutAvx) {
+  if (std::system("command -v qemu-x86_64 >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "no such CPU here: Debian's qemu-user has one";
+  const std::string work = "reconstruct " + scene_ + " --overlays 0 --preset fast --out ";
+  ASSERT_EQ(run(work + in_folder("here")).status, 0);
+  const std::string old = "SKETCHSPLAT_ENVIRONMENT=set qemu-x86_64 -cpu Nehalem '" +
+                          std::string(SKETCHSPLAT_BINARY) + "' " + work + in_folder("there") +
+                          " >/dev/null 2>&1";
+  ASSERT_EQ(std::system(old.c_str()), 0);
+  for (const char* name : {"sketch.json", "sketch.obj", "sketch.step", "edge_points.ply"})
+    EXPECT_TRUE(text_of_file(folder_ / "here" / name) == text_of_file(folder_ / "there" / name))
+        << name;
+}
+
 TEST_F(Chain, ExportGivesTheFilesOfTheReconstruction) {
   ASSERT_EQ(run("reconstruct " + scene_ + " --preset fast --out " + in_folder("result")).status, 0);
   for (const char* name : {"sketch.obj", "edge_points.ply", "parametric_edges.json"}) {
