@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Gives every verb files that are damaged at random, and says where the program neither did its work
-nor refused it in one line.
+"""Gives every verb files that are damaged at random, and says where the program neither did its
+work nor refused it in one line.
 
 The readers have targets of their own (../../run fuzz); this is about what comes after them: a file
 that can be read may still hold what a fit, a mesher or a search for loops never returns from.
 
-  tests/fuzz/damaged_verbs.py --binary build/pipelines/sketchsplat --work DIR [--runs 500] [--seed 1]
+  tests/fuzz/damaged_verbs.py --binary build/pipelines/sketchsplat --work DIR [--runs 500]
 
 Exit status 1 if something was found; the files are in WORK/findings then.
 """
