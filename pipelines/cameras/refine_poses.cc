@@ -333,14 +333,18 @@ void append(const RunReport& from, RunReport* to) {
   to->warnings.insert(to->warnings.end(), from.warnings.begin(), from.warnings.end());
 }
 
-void tell(const Explained& shares, const Misfit& off, Progress* progress) {
-  if (!progress) return;
+// How far the cameras are off.
+Misfit check_cameras(const Posed& posed, const StatedCameras& stated, double share,
+                     RunReport* report, Progress* progress) {
+  Stage stage("cameras", 0, report, progress);
+  const Misfit off = misfit(posed, stated);
   char text[160];
   std::snprintf(text, sizeof text,
-                "cameras: strokes explain %.0f %%, are off by %.3f px, by %.3f px for poses%s",
-                100 * shares.share, off.offset_px, off.error_px,
+                "strokes explain %.0f %%, are off by %.3f px, by %.3f px for poses%s", 100 * share,
+                off.offset_px, off.error_px,
                 off.shared ? ", another focal length or lens fits" : "");
-  progress->note(text);
+  stage.result(text);
+  return off;
 }
 
 }  // namespace
@@ -353,8 +357,7 @@ PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const Reconstruct
   Explained shares = explained(posed.sketch, posed.world);
   const bool able = options.refine_poses != "off" && posed.world.views.size() >= kFewestViews &&
                     options.detector != "2dgs-sn";
-  const Misfit off = able ? misfit(posed, stated) : Misfit{};
-  tell(shares, off, progress);
+  const Misfit off = able ? check_cameras(posed, stated, shares.share, report, progress) : Misfit{};
   const bool low = shares.share < kChanceShare && !stands_among_things(posed.world);
   const double as_stated = shares.share;
   bool moved = false;
