@@ -20,8 +20,9 @@ struct TagEdge {
 std::vector<TagEdge> tag_edges(int id);
 
 /// How far from a pixel of the image, along a unit normal from dark to bright, the edge is, looked
-/// for within `half_width` [px]: the middle of the rise. False if the picture does not hold one
-/// there that rises by at least `least_rise` in linear light.
+/// for within `half_width` [px]: the middle of the rise, under light that may grow or fall off
+/// across it. False if the picture does not hold one there that rises by at least `least_rise` in
+/// linear light.
 bool edge_offset(const TagPatch& patch, const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal,
                  double half_width, double least_rise, double* offset);
 

@@ -22,22 +22,22 @@ using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 constexpr int kFewestViews = 3;
-constexpr int kManyViews = 10;        // that tell how much views scatter
-constexpr int kFewestEdges = 24;      // of a view
-constexpr int kRounds = 12;           // of measuring and solving
-constexpr double kSmallestCell = 3;   // [px] smaller cells blur into one another
-constexpr double kWidestWindow = 4;   // [px] to either side of an edge
-constexpr double kLeastRise = 0.04;   // of linear light from black to white
+constexpr int kManyViews = 10;       // that tell how much views scatter
+constexpr int kFewestEdges = 24;     // of a view
+constexpr int kRounds = 12;          // of measuring and solving
+constexpr double kSmallestCell = 3;  // [px] smaller cells blur into one another
+constexpr double kWidestWindow = 4;  // [px] to either side of an edge
+constexpr double kLeastRise = 0.04;  // of linear light from black to white
 constexpr double kStrayShare =
-    0.15;  // of the side in pixels, by which a corner may be off at first
-constexpr double kStrayTimes = 5;     // the usual scatter: a view that does not fit
-constexpr double kBiweight = 4.685;   // Huber & Ronchetti, Robust Statistics, 2009
-constexpr double kShiftPx = 0.5;      // standard deviation of what a view makes of black's breadth
-constexpr double kPixelFloor = 0.003; // [px] by which no number of views measures a side better
-constexpr double kBorder = 0.125;     // of the side: the white one
-constexpr double kClearPx = 3;        // around what is left out
+    0.15;                            // of the side in pixels, by which a corner may be off at first
+constexpr double kStrayTimes = 5;    // the usual scatter: a view that does not fit
+constexpr double kBiweight = 4.685;  // Huber & Ronchetti, Robust Statistics, 2009
+constexpr double kShiftPx = 0.5;     // standard deviation of what a view makes of black's breadth
+constexpr double kPixelFloor = 0.003;  // [px] by which no number of views measures a side better
+constexpr double kBorder = 0.125;      // of the side: the white one
+constexpr double kClearPx = 3;         // around what is left out
 constexpr int kMinChain = 3;
-constexpr double kLookupPx = 4;       // as the detectors'
+constexpr double kLookupPx = 4;  // as the detectors'
 
 const Vector2d kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
 
@@ -119,9 +119,9 @@ std::optional<TagSquare> first_square(const std::vector<View>& views,
 
 // What a view says: after a change d of the square, its edges are off by offset - row . d - shift.
 struct Measured {
-  std::vector<Vector7d> row;  // by centre (3), turn (3), logarithm of the side
-  std::vector<double> offset; // [px] towards white
-  double shift = 0;           // [px] that they have in common: black is so much broader
+  std::vector<Vector7d> row;   // by centre (3), turn (3), logarithm of the side
+  std::vector<double> offset;  // [px] towards white
+  double shift = 0;            // [px] that they have in common: black is so much broader
 
   // Sums over the edges with their weights.
   double weight = 0;

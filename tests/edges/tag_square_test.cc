@@ -17,10 +17,11 @@ using Eigen::Vector3d;
 constexpr double kSide = 0.31;
 
 struct Shot {
-  double broader_px = 0;    // by which black is drawn broader on all sides
-  double noise = 1;         // grey levels
-  bool by_gamma = true;     // pictures on sRGB's curve; else in linear light
-  double blur_px = 0.6;     // standard deviation
+  double broader_px = 0;  // by which black is drawn broader on all sides
+  double noise = 1;       // grey levels
+  bool by_gamma = true;   // pictures on sRGB's curve; else in linear light
+  double blur_px = 0.6;   // standard deviation
+  double shadow = 0;      // share of the light that is missing in the middle, less outwards
 };
 
 TagSquare true_square(int id) {
@@ -53,7 +54,7 @@ View look(const TagSquare& tag, std::mt19937* rng, bool lens) {
 
 // Light from an ideal pixel; black is broader by so many pixels.
 double light_at(const View& view, const TagSquare& tag, const TagBitmap& bitmap,
-                const Vector2d& ideal, double broader_px) {
+                const Vector2d& ideal, double broader_px, double shadow) {
   const Vector3d eye = view.center_in_world();
   const Vector3d ray = view.cam_from_world.rotation.transpose() * view.camera.ray(ideal);
   const double depth = tag.axes.col(2).dot(tag.centre - eye) / tag.axes.col(2).dot(ray);
@@ -69,7 +70,8 @@ double light_at(const View& view, const TagSquare& tag, const TagBitmap& bitmap,
   float darkest = colour(in.x(), in.y());
   for (int k = 0; k < 9 && b > 0; ++k)
     darkest = std::min(darkest, colour(in.x() + (k % 3 - 1) * b, in.y() + (k / 3 - 1) * b));
-  return 0.06 + 0.6 * double(darkest);
+  const double lit = 1 - shadow * std::exp(-2 * in.head<2>().squaredNorm());
+  return lit * (0.06 + 0.6 * double(darkest));
 }
 
 Picture draw(const View& view, const TagSquare& tag, const Shot& shot, std::mt19937* rng) {
@@ -97,13 +99,12 @@ Picture draw(const View& view, const TagSquare& tag, const Shot& shot, std::mt19
         const Eigen::Matrix2d back = J.inverse();
         light = 0;
         for (const Vector2d& way : ways)
-          light += light_at(view, tag, bitmap, ideal + back * way, shot.broader_px);
+          light += light_at(view, tag, bitmap, ideal + back * way, shot.broader_px, shot.shadow);
         light /= double(ways.size());
       }
-      const double value = !shot.by_gamma ? light
-                           : light <= 0.0031308
-                               ? 12.92 * light
-                               : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+      const double value = !shot.by_gamma       ? light
+                           : light <= 0.0031308 ? 12.92 * light
+                                                : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
       grey.at(x, y) =
           float(std::round(std::clamp(255 * value + shot.noise * gauss(*rng), 0.0, 255.0)) / 255);
     }
@@ -166,6 +167,18 @@ TEST(TagSquare, DoesNotGrowWithBroaderBlack) {
     ASSERT_EQ(tags.size(), 1u);
     EXPECT_NEAR(tags[0].side / kSide, 1, 1e-3);
   }
+}
+
+// In all pictures alike, so that no scatter between them would tell.
+TEST(TagSquare, DoesNotGrowInAHalfShadow) {
+  Shot shot;
+  shot.shadow = 0.5;
+  const Photographs p = photograph(12, 3, shot);
+  const std::vector<TagSquare> tags = fit_tags(p.views, p.patches);
+  ASSERT_EQ(tags.size(), 1u);
+  const double error = std::abs(tags[0].side / kSide - 1);
+  EXPECT_LT(error, 2e-4);
+  EXPECT_LT(error, 3 * tags[0].sigma / kSide);
 }
 
 TEST(TagSquare, LeavesOutViewsThatSayOtherwise) {
