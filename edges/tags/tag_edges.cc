@@ -12,7 +12,7 @@ constexpr double kMargin = 0.2;                     // of the tag's box around i
 constexpr int kMarginPx = 8;
 constexpr double kStep = 0.25;   // [px] of a profile
 constexpr int kCentrings = 4;    // of the window on the edge
-constexpr double kNarrow = 0.45;  // of a window: the second one
+constexpr double kNarrow = 0.45; // of a window: the second one
 constexpr double kFar = 2;       // [px] from where the edge is expected: it is another one
 
 // IEC 61966-2-1.
