@@ -10,10 +10,10 @@ namespace {
 constexpr double kAlongCell[] = {0.32, 0.5, 0.68};  // away from corners, which blur rounds
 constexpr double kMargin = 0.2;                     // of the tag's box around it, and pixels:
 constexpr int kMarginPx = 8;
-constexpr double kStep = 0.25;   // [px] of a profile
-constexpr int kCentrings = 4;    // of the window on the edge
-constexpr double kNarrow = 0.45; // of a window: the second one
-constexpr double kFar = 2;       // [px] from where the edge is expected: it is another one
+constexpr double kStep = 0.25;    // [px] of a profile
+constexpr int kCentrings = 4;     // of the window on the edge
+constexpr double kNarrow = 0.45;  // of a window: the second one
+constexpr double kFar = 2;        // [px] from where the edge is expected: it is another one
 
 // IEC 61966-2-1.
 float linear(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
