@@ -98,7 +98,7 @@ Round rewritten(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 }
 
 constexpr double kNoRound = 1e6;  // [px] as --least-round
-constexpr const char* kOddsOfRound = "odds_of_round";
+constexpr const char *kOddsOfRound = "odds_of_round", *kOddsOfEdge = "odds_of_edge";
 
 }  // namespace
 
@@ -122,6 +122,7 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
       polish(initial_sketch(points, world.footprint, options), world, early(options));
   const Selection selection = select_strokes(first, world, select_options(options));
   report->counts.push_back({kOddsOfRound, selection.round_odds});
+  report->counts.push_back({kOddsOfEdge, selection.edge_odds});
   note_verdicts(first, selection, progress);
   const Sketch& chosen = selection.sketch;
   report->counts.push_back({"strokes_lifted", double(first.size())});
@@ -158,11 +159,13 @@ Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& 
 
 namespace {
 
-// As the first strokes had it, of which rounds had not been left out yet.
+// As the first strokes had it, of which rounds and accidents had not been left out yet.
 SelectOptions later(const RunReport& report, const ReconstructOptions& options) {
   SelectOptions select = select_options(options);
-  for (const auto& [name, value] : report.counts)
+  for (const auto& [name, value] : report.counts) {
     if (name == kOddsOfRound) select.round_odds = value;
+    if (name == kOddsOfEdge) select.edge_odds = value;
+  }
   return select;
 }
 

@@ -114,88 +114,174 @@ double edge_nats(double nothing, double round, double round_odds) {
   return least - std::log(std::exp(least - nothing) + round_odds * std::exp(least - round));
 }
 
+double odds_of_edge(const std::vector<double>& nats) {
+  constexpr double kEdges = 1, kAccidents = 5;  // known beforehand: few strokes say little
+  constexpr int kRepeats = 50;                  // of expectation and maximization
+  double odds = 1;
+  for (int k = 0; k < kRepeats; ++k) {
+    double edges = kEdges;
+    for (const double n : nats) edges += 1 / (1 + std::exp(-n) / odds);
+    odds = edges / (kEdges + kAccidents + double(nats.size()) - edges);
+  }
+  // Among many accidents, what the views show must do.
+  return std::max(odds, 1.0);
+}
+
 const char* verdict_name(Verdict verdict) {
   static const char* const names[] = {"kept", "short", "round", "unlikely", "redundant"};
   return names[int(verdict)];
 }
 
+namespace {
+
+// What is known of the strokes before any of them is chosen.
+class Greedy {
+ public:
+  Greedy(const Sketch& sketch, const EdgeWorld& world, const SelectOptions& options)
+      : sketch_(sketch),
+        world_(world),
+        options_(options),
+        match_(match_options(sketch, world)),
+        o_(with_strokes(observe(sketch, world, match_, kSpacing), world, options.min_views)),
+        every_(observe(sketch, world, lone(match_), kSpacing)),
+        judge_(world, every_, match_.reach_px, o_.matches.sigma_px, options.evidence),
+        wide_(observe_rounds(sketch, world, match_.reach_px)),
+        rounds_(world, wide_, options.round),
+        order_(sketch.size()),
+        degree_(node_degrees(sketch)),
+        node_price_(node_price(world, place_sigma_px(o_, options.place_sigma_px))),
+        of_rims_(no_edgels(world)),
+        rim_(explain_rims(o_, world, options, &of_rims_)),
+        round_odds_(options.round_odds > 0 ? options.round_odds
+                                           : odds_in_scene(o_, judge_, rounds_, rim_, options)) {
+    std::iota(order_.begin(), order_.end(), 0);
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](int a, int b) { return o_.strokes[a].matches > o_.strokes[b].matches; });
+  }
+
+  // Best supported first. `edge_odds`: of an edge to nothing, beforehand.
+  Selection choose(double edge_odds) {
+    owned_ = explained_ = of_rims_;
+    log_odds_ = std::log(edge_odds);
+    Selection result;
+    result.edge_odds = edge_odds;
+    result.round_odds = round_odds_;
+    result.verdicts.resize(sketch_.size());
+    result.stats = o_.strokes;
+    result.nats.resize(sketch_.size());
+    ratios_.assign(sketch_.size(), NAN);
+    std::vector<bool> keep(sketch_.size());
+    for (const int i : order_) {
+      result.verdicts[i] = judge(i, &result);
+      if (result.verdicts[i] != Verdict::kKept) continue;
+      keep[i] = true;
+      own(world_, o_, i, &owned_);
+      explain(world_, points_of(o_, i), {}, &explained_);
+    }
+    result.sketch = keep_strokes(sketch_, keep);
+    int next = 0;
+    for (int i = 0; i < sketch_.size(); ++i) {
+      result.remap.stroke.push_back(keep[i] ? next++ : -1);
+      result.changes += !keep[i];
+    }
+    return result;
+  }
+
+  // [nat] Likelihood ratios of an edge to nothing, of the strokes that were judged by the views in
+  // the last choice and are not known from elsewhere.
+  std::vector<double> ratios() const {
+    std::vector<double> out;
+    for (int i = 0; i < sketch_.size(); ++i)
+      if (!known(i) && !std::isnan(ratios_[i])) out.push_back(ratios_[i]);
+    return out;
+  }
+
+ private:
+  static constexpr double kSpacing = 2;  // [px] of samples
+
+  static MatchOptions match_options(const Sketch& sketch, const EdgeWorld& world) {
+    MatchOptions match;
+    match.exclusive = false;
+    match.quadratics = false;
+    match.reach_px = reach_of_edgels(sketch, world, match);
+    return match;
+  }
+  static MatchOptions lone(MatchOptions match) {
+    match.min_run = 0;
+    return match;
+  }
+
+  bool known(int i) const { return !options_.prior.empty() && !std::isnan(options_.prior[i]); }
+
+  // [nat] of a stroke and of the nodes that it alone ends in.
+  double price(int i) const {
+    const Stroke& s = sketch_.strokes[i];
+    double sum = options_.price * own_parameters(s.kind);
+    for (const int n : {s.begin, s.end}) sum += n >= 0 && degree_[n] == 1 ? node_price_ : 0;
+    return sum;
+  }
+
+  int claimed(int i, const EdgelFlags& owned) const {
+    std::vector<int> per_view(world_.views.size());
+    return claim(o_, i, owned, &per_view);
+  }
+
+  Verdict judge(int i, Selection* result) {
+    if (rim_[i]) return Verdict::kRound;
+    if (o_.strokes[i].length_px < options_.min_length_px) return Verdict::kShort;
+    // Where two edges run side by side, the better one has explained its edgels already.
+    const double places = own_cover(o_, i, options_.min_views, owned_) * o_.strokes[i].samples;
+    Verdict verdict;
+    if (!known(i) && (claimed(i, owned_) < options_.min_views || kOutlierNats * places < price(i)))
+      verdict =
+          judge_.nats(i, nullptr) > options_.least_nats ? Verdict::kRedundant : Verdict::kUnlikely;
+    else
+      verdict = judge_by(owned_, i, result);
+    if (verdict != Verdict::kKept && (known(i) || claimed(i, explained_) >= options_.min_views))
+      verdict = judge_by(explained_, i, result);
+    return verdict;
+  }
+
+  // By the edgels that are no others'.
+  Verdict judge_by(const EdgelFlags& others, int i, Selection* result) {
+    result->stats[i] = summarise(world_, o_, i, options_.min_views, &others);
+    ratios_[i] = judge_.nats(i, &others);
+    const double edge = ratios_[i] + (known(i) ? options_.prior[i] : log_odds_);
+    const double no_round = -rounds_.nats(i, &others);
+    result->nats[i] = edge_nats(edge, no_round, round_odds_);
+    if (result->nats[i] > options_.least_nats) return Verdict::kKept;
+    return edge > no_round - std::log(round_odds_) ? Verdict::kRound : Verdict::kUnlikely;
+  }
+
+  const Sketch& sketch_;
+  const EdgeWorld& world_;
+  const SelectOptions& options_;
+  const MatchOptions match_;
+  const StrokeObservation o_;
+  const Observation every_;
+  const StrokeJudge judge_;
+  const Observation wide_;
+  const RoundJudge rounds_;
+  std::vector<int> order_;
+  const std::vector<int> degree_;
+  const double node_price_;
+  EdgelFlags of_rims_;
+  const std::vector<char> rim_;
+  const double round_odds_;
+  // Of the strokes that were chosen so far, and of rims.
+  EdgelFlags owned_, explained_;
+  double log_odds_ = 0;
+  std::vector<double> ratios_;  // [nat] of an edge to nothing; NaN: not judged
+};
+
+}  // namespace
+
 Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
                          const SelectOptions& options) {
-  MatchOptions match;
-  match.exclusive = false;
-  match.quadratics = false;
-  match.reach_px = reach_of_edgels(sketch, world, match);
-  const StrokeObservation o =
-      with_strokes(observe(sketch, world, match, 2.0), world, options.min_views);
-  MatchOptions lone = match;
-  lone.min_run = 0;
-  const Observation every = observe(sketch, world, lone, 2.0);
-  const StrokeJudge judge(world, every, match.reach_px, o.matches.sigma_px, options.evidence);
-  const Observation wide = observe_rounds(sketch, world, match.reach_px);
-  const RoundJudge rounds(world, wide, options.round);
-
-  std::vector<int> order(sketch.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return o.strokes[a].matches > o.strokes[b].matches; });
-  EdgelFlags owned = no_edgels(world), explained = owned;
-  std::vector<int> per_view(world.views.size());
-  Selection result;
-  result.verdicts.resize(sketch.size());
-  result.stats = o.strokes;
-  result.nats.resize(sketch.size());
-  std::vector<bool> keep(sketch.size());
-  const std::vector<int> degree = node_degrees(sketch);
-  const double node = node_price(world, place_sigma_px(o, options.place_sigma_px));
-  // [nat] of a stroke and of the nodes that it alone ends in.
-  const auto price = [&](int i) {
-    const Stroke& s = sketch.strokes[i];
-    double sum = options.price * own_parameters(s.kind);
-    for (int n : {s.begin, s.end}) sum += n >= 0 && degree[n] == 1 ? node : 0;
-    return sum;
-  };
-  const auto known = [&](int i) { return !options.prior.empty() && !std::isnan(options.prior[i]); };
-  const std::vector<char> round = explain_rims(o, world, options, &owned);
-  result.round_odds =
-      options.round_odds > 0 ? options.round_odds : odds_in_scene(o, judge, rounds, round, options);
-  explained = owned;
-  for (int i : order) {
-    Verdict& verdict = result.verdicts[i];
-    const auto judge_by = [&](const EdgelFlags& others) {
-      result.stats[i] = summarise(world, o, i, options.min_views, &others);
-      const double edge = judge.nats(i, &others) + (known(i) ? options.prior[i] : 0);
-      const double no_round = -rounds.nats(i, &others);
-      result.nats[i] = edge_nats(edge, no_round, result.round_odds);
-      verdict = result.nats[i] > options.least_nats             ? Verdict::kKept
-                : edge > no_round - std::log(result.round_odds) ? Verdict::kRound
-                                                                : Verdict::kUnlikely;
-    };
-    if (o.strokes[i].length_px < options.min_length_px) verdict = Verdict::kShort;
-    if (round[i]) verdict = Verdict::kRound;
-    if (verdict != Verdict::kKept) continue;
-    // Where two edges run side by side, the better one has explained its edgels already.
-    const double places = own_cover(o, i, options.min_views, owned) * o.strokes[i].samples;
-    if (!known(i) &&
-        (claim(o, i, owned, &per_view) < options.min_views || kOutlierNats * places < price(i)))
-      verdict =
-          judge.nats(i, nullptr) > options.least_nats ? Verdict::kRedundant : Verdict::kUnlikely;
-    else
-      judge_by(owned);
-    if (verdict != Verdict::kKept &&
-        (known(i) || claim(o, i, explained, &per_view) >= options.min_views))
-      judge_by(explained);
-    if (verdict != Verdict::kKept) continue;
-    keep[i] = true;
-    own(world, o, i, &owned);
-    explain(world, points_of(o, i), {}, &explained);
-  }
-  result.sketch = keep_strokes(sketch, keep);
-  int next = 0;
-  for (int i = 0; i < sketch.size(); ++i) {
-    result.remap.stroke.push_back(keep[i] ? next++ : -1);
-    result.changes += !keep[i];
-  }
-  return result;
+  Greedy greedy(sketch, world, options);
+  if (options.edge_odds > 0) return greedy.choose(options.edge_odds);
+  greedy.choose(1);
+  return greedy.choose(odds_of_edge(greedy.ratios()));
 }
 
 }  // namespace sketchsplat

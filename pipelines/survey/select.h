@@ -21,6 +21,9 @@ struct SelectOptions {
   /// Of a round rather than an edge beforehand; 0: as these strokes have it (odds_of_round). To be
   /// told where rounds have been left out already: what is left holds fewer than the scene does.
   double round_odds = 0;
+  /// Of an edge rather than an accident of edgels, beforehand; 0: as these strokes have it
+  /// (odds_of_edge). To be told where accidents have been left out already.
+  double edge_odds = 0;
   /// [nat] log prior odds of strokes that are known from elsewhere, one per stroke, NaN: none. They
   /// add to the likelihood; neither their number of views nor their price counts, which those paid
   /// for who knew them first. Empty: of no stroke.
@@ -38,11 +41,18 @@ enum class Verdict {
 const char* verdict_name(Verdict verdict);
 
 /// [nat] Logarithm of the odds of an edge, from its likelihood ratios [nat] to nothing and to a
-/// round. Nothing is beforehand as likely as an edge, as if there were no rounds; a round
-/// `round_odds` times as likely (odds_of_round).
+/// round. `nothing` holds the odds of an edge to nothing beforehand; a round
+/// is `round_odds` times as likely as an edge (odds_of_round).
 double edge_nats(double nothing, double round, double round_odds);
 
+/// Odds of an edge to an accident before the views are asked, under which these likelihood ratios
+/// [nat] of a scene's strokes are likeliest: expectation and maximization, from one edge and
+/// five accidents; at least 1. In clean pictures hardly any stroke is an accident, and edges that
+/// few views show, as those of pockets, may stay.
+double odds_of_edge(const std::vector<double>& nats);
+
 struct Selection : PassResult {
+  double edge_odds = 0;            ///< that were used
   double round_odds = 0;           ///< that were used
   std::vector<Verdict> verdicts;   ///< one per stroke that came in
   std::vector<StrokeStats> stats;  ///< what the verdicts rest on

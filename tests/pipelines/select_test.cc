@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "pipelines/stages/stages.h"
 #include "tests/support/strokes.h"
 
@@ -134,6 +137,42 @@ TEST(Select, AnEdgeThatStandsOffInSingleViewsIsLikelierIfItsDetectorErrsSo) {
   };
   EXPECT_GT(nats("2dgs-sn", 0), nats("image", 0) + 3);
   EXPECT_LT(nats("2dgs-sn", 5), nats("image", 5)) << "one that stands still is less sure then";
+}
+
+TEST(Select, OddsOfEdgesAreThoseUnderWhichTheLikelihoodRatiosWereDrawn) {
+  EXPECT_NEAR(odds_of_edge({}), 1, 1e-9);
+  EXPECT_NEAR(odds_of_edge(std::vector<double>(99, 50)), 20, 1e-3);
+  EXPECT_LT(odds_of_edge(std::vector<double>(12, 50)), 3) << "few strokes say little";
+  EXPECT_NEAR(odds_of_edge(std::vector<double>(9, -50)), 1, 1e-3) << "never less";
+  // Of normal likelihood ratios: mean half the variance.
+  std::mt19937 rng(3);
+  std::normal_distribution<double> normal(0, 3);
+  for (const int edges : {300, 380}) {
+    std::vector<double> nats;
+    for (int i = 0; i < 400; ++i) nats.push_back(normal(rng) + (i < edges ? 4.5 : -4.5));
+    EXPECT_NEAR(std::log(odds_of_edge(nats)), std::log(edges / (400.0 - edges)), 0.4);
+  }
+}
+
+TEST(Select, WhatIsUnlikelyByItselfMayStayWhereNoStrokeIsAnAccident) {
+  Sketch s = cube();
+  const int rare = add_line(&s, {0.3, 0.5, 0.4}, {0.7, 0.6, 0.6});
+  const EdgeWorld w = world_of(40, [&](int i, const View&) {
+    std::vector<Polyline> seen = polylines_of(cube());
+    if (i % 6 == 0) seen.push_back(polyline_of(s, rare));
+    return seen;
+  });
+  SelectOptions options;
+  options.round.least_radius_px = 1e6;
+  options.edge_odds = 1;
+  const Selection alone = select_strokes(s, w, options);
+  options.least_nats = alone.nats[rare] + 1;
+  EXPECT_EQ(select_strokes(s, w, options).verdicts[rare], Verdict::kUnlikely);
+  options.edge_odds = 0;
+  const Selection all = select_strokes(s, w, options);
+  EXPECT_EQ(all.verdicts[rare], Verdict::kKept);
+  EXPECT_GT(all.edge_odds, 2);
+  EXPECT_NEAR(all.nats[rare], alone.nats[rare] + std::log(all.edge_odds), 1e-6);
 }
 
 TEST(Select, AStrokeThatTooFewViewsSeeIsNotKept) {
