@@ -31,7 +31,10 @@ constexpr double kNearAsidePx = 6;    // [px] of a copy that shows what is no ed
 constexpr int kAsides = 7;
 constexpr int kPasses = 3;
 constexpr int kMostCandidates = 8000;  // a sketch that leads to expect more tells nothing
-constexpr double kGroup = 2;           // times the least nats of one, that all of a group must have
+constexpr double kGroup = 2;           // times the nats of one, that all of a group must have
+constexpr double kWholeShare = 0.9;    // of one of a group that is known as a whole
+constexpr double kKnownNats = 3;       // [nat] of one of a group that is known, as of a clear view
+constexpr double kShows = 1;           // [nat] of one of a group that is there
 constexpr double kAgainst = -2;        // [nat] of one of a group that is not there after all
 constexpr double kBeside = 0.4;        // of the nats of a candidate that copies aside may get
 constexpr double kGroupBeside = 0.6;   // of a group: short edges, moved aside, meet neighbours
@@ -66,6 +69,16 @@ bool all_of_it_shows(const ContrastEvidence& e, double accident) {
   return shown >= kShownShare * pieces && sure >= 0.5 * pieces;
 }
 
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// Each of most of them, not a few for all.
+bool most_show(const std::vector<double>& nats) {
+  const auto shown = std::count_if(nats.begin(), nats.end(), [](double x) { return x > kShows; });
+  return double(shown) >= kShownShare * double(nats.size());
+}
+
 // The contour of a round surface is no edge, though many views show it near one place.
 bool is_rim(const EdgeWorld& world, const CurvePoints& points, double least) {
   const Rim rim = fit_rim(world, points, {});
@@ -96,12 +109,20 @@ void append(const Candidate& c, Sketch* sketch) {
                      {c.curve.p.begin() + first, c.curve.p.begin() + first + inner});
 }
 
+// Candidates that are there or not, all together.
+struct Group {
+  std::vector<int> members;
+  std::vector<double> known, known_floor;  // [nat] of others that the sketch has already
+};
+
 // Candidates that are not known, and what they and copies of them that are no edges get.
 struct Judged {
   std::vector<Candidate> candidates;
   std::vector<CurvePoints> points;
   std::vector<double> nats, nulls;
   int tests = 0;
+  std::map<int, Group> groups;  // of more than one
+  int depths = 0;               // that were tried for groups
 };
 
 // Several sources may tell of one place, from either end.
@@ -122,11 +143,18 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
   const double px = world.footprint;
   const KnownCurves known(sketch, px, kKnownPx * px);
   Judged out;
-  const std::vector<Candidate> all = all_candidates(sketch, world, known, judge, &out.tests);
+  const std::vector<Candidate> all = all_candidates(sketch, world, known, judge, &out.depths);
+  out.tests = out.depths;
   if (int(all.size()) > kMostCandidates) return out;
   for (const Candidate& c : all) {
     const CurvePoints points = candidate_points(c, px);
-    if (points.position.cols() < kLeastPx || known.share(points) > kKnownShare) continue;
+    if (points.position.cols() < kLeastPx) continue;
+    const double share = known.share(points);
+    if (c.group >= 0 && share > kKnownShare) {
+      Group& group = out.groups[c.group];
+      (c.floor ? group.known_floor : group.known).push_back(share * kKnownNats);
+    }
+    if (share > (c.group >= 0 ? kWholeShare : kKnownShare)) continue;
     if (std::any_of(out.points.begin(), out.points.end(),
                     [&](const CurvePoints& p) { return is_same(p, points, 0.7 * px); }))
       continue;
@@ -149,6 +177,8 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
     if (known.share(aside) <= kKnownShare) out.nulls[i] = nats(aside, windows);
   });
   out.nulls.erase(std::remove(out.nulls.begin(), out.nulls.end(), -INFINITY), out.nulls.end());
+  for (int i = 0; i < n; ++i)
+    if (out.candidates[i].group >= 0) out.groups[out.candidates[i].group].members.push_back(i);
   return out;
 }
 
@@ -161,15 +191,13 @@ class Pass {
         options_(options),
         judge_(judge_beside(sketch, world, options.contrast)),
         all_(judged(sketch, world, judge_)),
-        least_(alarm_threshold(all_.nulls, all_.tests, options.false_strokes / kPasses)) {}
+        least_(alarm_threshold(all_.nulls, all_.tests, options.false_strokes / kPasses)),
+        least_of_group_(kGroup * std::log((all_.depths + double(all_.groups.size())) * kPasses /
+                                          options.false_strokes)) {}
 
   MissingEdges run() {
     out_ = {sketch_, {}, {}, {}, all_.tests};
-    std::map<int, std::vector<int>> groups;
-    for (int i = 0; i < int(all_.candidates.size()); ++i)
-      if (all_.candidates[i].group >= 0) groups[all_.candidates[i].group].push_back(i);
-    for (const auto& [group, members] : groups)
-      if (members.size() > 1) add_group(members);
+    for (const auto& [number, group] : all_.groups) add_group(group);
     std::vector<int> order(all_.candidates.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
@@ -202,26 +230,30 @@ class Pass {
     }
   }
 
-  // What one view shows by accident it may show along several of them: they count as two.
-  void add_group(const std::vector<int>& members) {
-    double sum = 0;
-    for (const int i : members) sum += all_.nats[i];
-    if (!(sum > kGroup * least_)) return;
+  // They are there or not, all together. Of likelihood ratios of no edges one in exp(x) exceeds x;
+  // what one view shows by accident it may show along several of them: they count as two.
+  void add_group(const Group& group) {
+    if (group.members.empty()) return;
+    std::vector<double> hasty;
+    for (const int i : group.members) hasty.push_back(all_.nats[i]);
+    if (!(sum(hasty) + sum(group.known) + sum(group.known_floor) > least_of_group_)) return;
     double beside = 0;
-    int shown = 0;
-    std::vector<double> nats;
-    for (const int i : members) {
+    std::vector<double> nats, walls = group.known, floor = group.known_floor;
+    for (const int i : group.members) {
       const std::vector<Window>& windows = windows_of(all_.candidates[i]);
       nats.push_back(judge_.judge(all_.points[i], 1, windows).nats);
-      shown += nats.back() > 0;
+      (all_.candidates[i].floor ? floor : walls).push_back(nats.back());
       beside += judge_.beside(all_.points[i], windows);
     }
-    sum = std::accumulate(nats.begin(), nats.end(), 0.0);
-    if (!(sum > kGroup * least_) || beside > kGroupBeside * sum ||
-        shown < kShownShare * double(members.size()))
-      return;
-    for (size_t k = 0; k < members.size(); ++k)
-      if (nats[k] > kAgainst && !is_known(all_.points[members[k]])) add(members[k], nats[k], true);
+    const double all = sum(walls) + sum(floor);
+    // Walls go on to any depth: it is the floor that tells it.
+    if (!(all > least_of_group_) || beside > kGroupBeside * all || !most_show(floor)) return;
+    walls.insert(walls.end(), floor.begin(), floor.end());
+    if (!most_show(walls)) return;
+    for (size_t k = 0; k < nats.size(); ++k) {
+      const int i = group.members[k];
+      if (nats[k] > kAgainst && !is_known(all_.points[i])) add(i, nats[k], true);
+    }
   }
 
   void add_single(int i) {
@@ -240,10 +272,23 @@ class Pass {
   const MissingOptions& options_;
   ContrastJudge judge_;
   Judged all_;
-  double least_;
+  double least_, least_of_group_;  // [nat]
   MissingEdges out_;
   Sketch added_;
 };
+
+// Without the first strokes of the sketch that run along those of groups: of the walls of a pocket
+// they are what many views see.
+void drop_covered(int first, double px, MissingEdges* all) {
+  std::vector<bool> of_group(all->sketch.size(), false), keep(all->sketch.size(), true);
+  for (int s = first; s < all->sketch.size(); ++s) of_group[s] = all->group[s - first];
+  const KnownCurves whole(keep_strokes(all->sketch, of_group), px, kKnownPx * px);
+  for (int s = 0; s < first; ++s)
+    keep[s] =
+        whole.share(candidate_points({all->sketch.strokes[s].kind, control_points(all->sketch, s)},
+                                     px)) <= kWholeShare;
+  all->sketch = keep_strokes(all->sketch, keep);
+}
 
 }  // namespace
 
@@ -260,6 +305,7 @@ MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
     out.candidates += more.candidates;
     if (more.nats.empty()) break;
   }
+  drop_covered(sketch.size(), world.footprint, &out);
   return out;
 }
 

@@ -16,7 +16,8 @@ struct MissingOptions {
 };
 
 struct MissingEdges {
-  Sketch sketch;             ///< with the strokes that were added, after the others
+  /// With the strokes that were added, after the others, without those that they run along.
+  Sketch sketch;
   std::vector<double> nats;  ///< of each that was added
   std::vector<bool> group;   ///< of each: was it added as one of many that are there or not?
   std::vector<Eigen::Vector3d> corners;  ///< where those of groups end, but on known strokes

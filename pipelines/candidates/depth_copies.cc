@@ -141,6 +141,17 @@ void add_walls(const Sketch& s, const std::vector<int>& loop, const Vector3d& by
   }
 }
 
+void add_copy(const Sketch& s, const std::vector<int>& loop, const Vector3d& by,
+              const std::shared_ptr<const std::vector<Window>>& windows, int group,
+              std::vector<Candidate>* out) {
+  for (const int i : loop) {
+    out->push_back(moved({s.strokes[i].kind, control_points(s, i)}, by));
+    out->back().windows = windows;
+    out->back().group = group;
+    out->back().floor = group >= 0;
+  }
+}
+
 struct Depth {
   double depth = 0;  // along the normal, world units; 0: none is worth a look
   double nats = kLeastNats;
@@ -193,22 +204,17 @@ std::vector<Candidate> depth_copies(const Sketch& sketch, const std::vector<Leve
           continue;
         }
         if (++loops > kMostLoops) return out;
-        auto windows = windows_at(sketch, loop, l.normal, Vector3d::Zero());
+        const auto windows = windows_at(sketch, loop, l.normal, Vector3d::Zero());
         const double low = l.height.front() - l.height[own], high = l.height.back() - l.height[own];
-        Depth best = best_depth(points, l.normal, low, high, judge, {}, px, depths);
+        const Depth best = best_depth(points, l.normal, low, high, judge, {}, px, depths);
         const Depth seen = best_depth(points, l.normal, low, high, judge, *windows, px, depths);
-        if (seen.depth != 0 && seen.nats > best.nats - kClearly)
-          best = seen;
-        else
-          windows = nullptr;
-        if (best.depth == 0) continue;
-        const Vector3d by = best.depth * l.normal;
-        for (const int i : loop) {
-          out.push_back(moved({sketch.strokes[i].kind, control_points(sketch, i)}, by));
-          out.back().windows = windows;
-          if (windows) out.back().group = group;
+        if (seen.depth != 0) {
+          const Vector3d by = seen.depth * l.normal;
+          add_copy(sketch, loop, by, windows, group, &out);
+          add_walls(sketch, loop, by, windows, group++, &out);
         }
-        if (windows) add_walls(sketch, loop, by, windows, group++, &out);
+        if (best.nats > seen.nats + kClearly)
+          add_copy(sketch, loop, best.depth * l.normal, nullptr, -1, &out);
       }
     }
   return out;

@@ -17,7 +17,8 @@ struct Candidate {
   ControlPoints curve = {};
   /// Openings through which views see it, if it is in a pocket or a hole; null: nobody knows.
   std::shared_ptr<const std::vector<Window>> windows = nullptr;
-  int group = -1;  ///< of candidates that are all there or none, as of one pocket; -1: alone
+  int group = -1;      ///< of candidates that are all there or none, as of one pocket; -1: alone
+  bool floor = false;  ///< of a group: at a depth at which the pictures show most
 };
 
 /// Points along a candidate, at most `spacing` (world units) apart, at least two.

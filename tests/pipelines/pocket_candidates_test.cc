@@ -22,12 +22,13 @@ using Eigen::Vector3d;
 constexpr double kDistance = 2.5;
 constexpr double kHalf = 0.1, kDepth = 0.13;  // of the pocket
 
-// Grey level of what a ray from above meets: a plate at z = 0 with a pocket around the origin.
-double level_of(const Vector3d& eye, const Vector3d& ray, bool pocket) {
+// Grey level of what a ray from above meets: a plate at z = 0 with a pocket around the origin, or,
+// of depth 0, the print of one.
+double level_of(const Vector3d& eye, const Vector3d& ray, double depth) {
   const Vector3d top = eye - ray * (eye.z() / ray.z());
   if (std::max(std::abs(top.x()), std::abs(top.y())) > kHalf) return 150;
-  if (!pocket) return 120;
-  double near = (-kDepth - eye.z()) / ray.z(), level = 128;  // the floor
+  if (!(depth > 0)) return 120;
+  double near = (-depth - eye.z()) / ray.z(), level = 128;  // the floor
   const double walls[] = {95, 110, 135, 142};
   for (int k = 0; k < 4; ++k) {
     const int axis = k % 2;
@@ -38,7 +39,7 @@ double level_of(const Vector3d& eye, const Vector3d& ray, bool pocket) {
   return level;
 }
 
-EdgeWorld world_of(bool pocket) {
+EdgeWorld world_of(double depth) {
   std::mt19937 rng(1);
   std::normal_distribution<double> grain(0, 2);
   EdgeWorld world;
@@ -52,7 +53,7 @@ EdgeWorld world_of(bool pocket) {
       for (int x = 0; x < 400; ++x) {
         const Vector3d ray =
             view.cam_from_world.rotation.transpose() * view.camera.ray(Vector2d(x, y));
-        const double level = level_of(eye, ray, pocket) + grain(rng);
+        const double level = level_of(eye, ray, depth) + grain(rng);
         part->value.at(x, y) = uint16_t(std::clamp(level, 0.0, 255.0) / 255 * GreyPart::kOne);
       }
     EdgelMap map;
@@ -83,8 +84,7 @@ Sketch rims() {
   return s;
 }
 
-TEST(PocketCandidates, FloorAndWallsAreFoundWhereViewsSeeThemThroughTheRim) {
-  const MissingEdges missing = add_missing(rims(), world_of(true), {});
+void expect_pocket(const MissingEdges& missing) {
   const double px = kDistance / 500;
   int floor = 0, walls = 0;
   for (int s = rims().size(); s < missing.sketch.size(); ++s) {
@@ -105,8 +105,25 @@ TEST(PocketCandidates, FloorAndWallsAreFoundWhereViewsSeeThemThroughTheRim) {
             std::ptrdiff_t(missing.group.size()));
 }
 
+TEST(PocketCandidates, FloorAndWallsAreFoundWhereViewsSeeThemThroughTheRim) {
+  expect_pocket(add_missing(rims(), world_of(kDepth), {}));
+}
+
+TEST(PocketCandidates, PiecesOfWallsThatAreKnownTellOfThePocketAndGiveWayToTheWholeOnes) {
+  Sketch s = rims();
+  for (const double side : {-kHalf, kHalf}) {
+    const int begin = s.add_node({side, kHalf, 0}), end = s.add_node({side, kHalf, -0.6 * kDepth});
+    s.add_stroke(StrokeKind::kLine, begin, end, {});
+  }
+  expect_pocket(add_missing(s, world_of(kDepth), {}));
+}
+
+TEST(PocketCandidates, WallsWithoutAFloorTellNoDepth) {
+  EXPECT_EQ(add_missing(rims(), world_of(1), {}).sketch.size(), rims().size());
+}
+
 TEST(PocketCandidates, APrintedSquareHasNoFloor) {
-  EXPECT_EQ(add_missing(rims(), world_of(false), {}).sketch.size(), rims().size());
+  EXPECT_EQ(add_missing(rims(), world_of(0), {}).sketch.size(), rims().size());
 }
 
 TEST(Window, LetsThroughWhatPassesInsideOfItsLoopFromTheOtherSide) {
