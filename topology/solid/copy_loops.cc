@@ -31,7 +31,11 @@ Vector3d point_of(const Sketch& sketch, int stroke, double t) {
 class Copier {
  public:
   Copier(const std::vector<bool>& left, double tolerance, Completed* all)
-      : seen_(all->seen), left_(left), tolerance_(tolerance), all_(all) {
+      : seen_(all->seen),
+        degree_(node_degrees(seen_)),
+        left_(left),
+        tolerance_(tolerance),
+        all_(all) {
     for (const Stroke& s : all->sketch.strokes)
       if (!is_closed(s.kind)) joined_.insert(std::minmax(s.begin, s.end));
   }
@@ -68,6 +72,11 @@ class Copier {
     return list;
   }
 
+  struct Told {
+    double height, weight;
+    bool loose;  // by the end of a stroke that nothing else ends in: it may go on unseen
+  };
+
   // Heights over the loop that strokes tell, each once.
   std::vector<double> depths(const PlanarLoop& loop) const {
     std::set<int> own, nodes;
@@ -75,7 +84,7 @@ class Copier {
       own.insert(s.stroke);
       nodes.insert({seen_.strokes[s.stroke].begin, seen_.strokes[s.stroke].end});
     }
-    std::vector<std::pair<double, double>> told;  // height, weight
+    std::vector<Told> told;
     for (int s = 0; s < seen_.size(); ++s) {
       if (!left_[s] || own.count(s) || is_closed(seen_.strokes[s].kind)) continue;
       const Stroke& stroke = seen_.strokes[s];
@@ -84,10 +93,11 @@ class Copier {
         if (nodes.count(here)) {
           const Vector3d to = seen_.nodes.col(there) - seen_.nodes.col(here);
           const double height = to.dot(loop.normal);
-          if (std::abs(height) > 0.999 * to.norm()) told.emplace_back(height, tolerance_);
+          if (std::abs(height) > 0.999 * to.norm())
+            told.push_back({height, tolerance_, degree_[there] == 1});
         }
       const double height = height_below(loop, s);
-      if (!std::isnan(height)) told.emplace_back(height, stroke_length(seen_, s));
+      if (!std::isnan(height)) told.push_back({height, stroke_length(seen_, s), false});
     }
     return clusters(told);
   }
@@ -114,17 +124,21 @@ class Copier {
     return level ? sum / (kPlaces + 1) : NAN;
   }
 
-  std::vector<double> clusters(std::vector<std::pair<double, double>> told) const {
-    std::sort(told.begin(), told.end());
+  // One loose end tells nothing, two that agree do.
+  std::vector<double> clusters(std::vector<Told> told) const {
+    std::sort(told.begin(), told.end(),
+              [](const Told& a, const Told& b) { return a.height < b.height; });
     std::vector<double> out;
     for (size_t i = 0; i < told.size();) {
       double weight = 0, sum = 0;
-      const double first = told[i].first;
-      for (; i < told.size() && told[i].first - first <= 2 * tolerance_; ++i) {
-        weight += told[i].second;
-        sum += told[i].first * told[i].second;
+      int ends = 0;
+      const double first = told[i].height;
+      for (; i < told.size() && told[i].height - first <= 2 * tolerance_; ++i) {
+        weight += told[i].weight;
+        sum += told[i].weight * told[i].height;
+        ends += told[i].loose ? 1 : 2;
       }
-      out.push_back(sum / weight);
+      if (ends > 1) out.push_back(sum / weight);
     }
     return out;
   }
@@ -168,6 +182,7 @@ class Copier {
   }
 
   const Sketch& seen_;
+  const std::vector<int> degree_;
   const std::vector<bool>& left_;
   double tolerance_;
   Completed* all_;
