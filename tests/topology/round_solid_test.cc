@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Solids with spheres and tori, of which the free numbers are read from contours.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -8,6 +9,7 @@
 #include "tests/topology/solids.h"
 #include "topology/brep/solid_step.h"
 #include "topology/faces/find_planes.h"
+#include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_solid.h"
 #include "topology/solid/round_families.h"
 
@@ -151,6 +153,50 @@ TEST(Cells, ATorusBetweenTwoRimsHasTwo) {
     }
     EXPECT_EQ(std::max(in[0], in[1]), 300);
     EXPECT_EQ(std::min(in[0], in[1]), 100);
+  }
+}
+
+// Of a zone of a sphere about the origin between two heights, closed by circles.
+void add_zone(double radius, double low, double high, Sketch* sketch,
+              std::vector<SurfaceStrokes>* surfaces) {
+  SurfaceStrokes zone;
+  zone.surface.kind = SurfaceKind::kSphere;
+  zone.surface.origin = Eigen::Vector3d::Zero();
+  zone.surface.axis = Eigen::Vector3d::UnitZ();
+  zone.surface.radius = radius;
+  for (const double z : {low, high}) {
+    zone.strokes.push_back(sketch->size());
+    sketch->add_stroke(
+        StrokeKind::kCircle, -1, -1,
+        {Eigen::Vector3d(0, 0, z), Eigen::Vector3d(0, 0, std::sqrt(radius * radius - z * z))});
+  }
+  surfaces->push_back(zone);
+}
+
+TEST(CrossingCells, ThinShellsDoNotRunThroughThemselves) {
+  for (const double inner : {0.93, 0.98}) {
+    Sketch sketch;
+    std::vector<SurfaceStrokes> surfaces;
+    add_zone(1, 0.1, 0.95, &sketch, &surfaces);
+    add_zone(inner, 0.05, 0.92, &sketch, &surfaces);
+    surfaces.push_back(surfaces.back());  // one that crosses the outer zone in a circle
+    surfaces.back().surface.origin.z() = 0.3;
+    surfaces.back().strokes.clear();
+    for (const double z : {0.0, 1.2}) {
+      surfaces.back().strokes.push_back(sketch.size());
+      sketch.add_stroke(StrokeKind::kCircle, -1, -1,
+                        {Eigen::Vector3d(0, 0, z),
+                         Eigen::Vector3d(0, 0, std::sqrt(inner * inner - (z - 0.3) * (z - 0.3)))});
+    }
+    const std::vector<Eigen::Matrix3Xd> polylines = polylines_of(sketch, 128);
+    std::vector<Cell> cells;
+    for (int i = 0; i < 3; ++i)
+      for (Cell& cell : cells_of(sketch, polylines, surfaces[i], i))
+        if (cell.loops.size() == 2) cells.push_back(std::move(cell));
+    ASSERT_EQ(cells.size(), 3u);
+    const std::vector<std::pair<int, int>> crossing = crossing_cells(surfaces, cells, 2e-3);
+    EXPECT_EQ(std::count(crossing.begin(), crossing.end(), std::pair(0, 1)), 0) << inner;
+    EXPECT_EQ(std::count(crossing.begin(), crossing.end(), std::pair(0, 2)), 1) << inner;
   }
 }
 

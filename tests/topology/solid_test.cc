@@ -81,7 +81,7 @@ TEST(FindSolid, HolesAndPocketsAreTold) {
 TEST(FindSolid, ConesAreToldIfTheLeastDescriptionIsEnough) {
   SolidOptions options;
   EXPECT_THAT(find_solid(cone_solid(0.5).edges, options).why, HasSubstr("another choice"));
-  options.margin = 1;
+  options.margin = 0.25;
   const SolidSearch search = find_solid(cone_solid(0.5).edges, options);
   ASSERT_TRUE(search.solid) << search.why;
   EXPECT_NEAR(write_solid_step(*search.solid, "").volume, M_PI / 3 * (1 + 0.5 + 0.25), 1e-6);
@@ -205,7 +205,7 @@ TEST(FindSolid, CoarseCurvesMoveOntoTheirSurfaces) {
       for (int k = 0; k < 3; ++k) sketch.nodes(k, i) += noise(random);
     SolidOptions options;
     options.tolerance = 4e-3;
-    options.margin = 1;
+    options.margin = 0.25;
     const SolidSearch search = find_solid(sketch, options);
     if (!search.solid) continue;  // noise may be too much for a plane
     const SolidCheck check = write_solid_step(*search.solid, "");

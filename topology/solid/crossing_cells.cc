@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLines = 12;  // of a grid over a cell, in either direction
+constexpr int kLines = 12;    // of a grid over a cell, in either direction
+constexpr int kHalvings = 4;  // of its lines where the surface bends
 
 struct Segment {
   Vector3d from, to;
@@ -28,6 +29,19 @@ bool holds_well(const Placed& placed, const Vector3d& point, double margin) {
   for (const auto& [u, v] : {std::pair(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
     if (!placed.cell.holds(flat + margin * Eigen::Vector2d(u, v))) return false;
   return true;
+}
+
+// Chords of a bent piece of a surface, none of which stands off it by more than `most`: those of a
+// coarse grid would run through what lies inside of it.
+void add_chords(const Segment& s, const Layout& layout, double most, int depth,
+                std::vector<Segment>* out) {
+  const Vector3d chord = 0.5 * (s.from + s.to), middle = layout.point(layout.flat(chord));
+  if (depth == 0 || (middle - chord).norm() <= most) {
+    out->push_back(s);
+    return;
+  }
+  add_chords({s.from, middle}, layout, most, depth - 1, out);
+  add_chords({middle, s.to}, layout, most, depth - 1, out);
 }
 
 // Does a segment of one cell run through the other?
@@ -55,7 +69,7 @@ std::vector<std::pair<int, int>> crossing_cells(const std::vector<SurfaceStrokes
     index.emplace_back(cell, layouts[cell.surface]);
     segments.emplace_back();
     for (const auto& [from, to] : grid_within(cell, layouts[cell.surface], kLines))
-      segments.back().push_back({from, to});
+      add_chords({from, to}, layouts[cell.surface], tolerance, kHalvings, &segments.back());
   }
   const auto placed = [&](int c) { return Placed{index[c], layouts[cells[c].surface]}; };
   const auto through = [&](int a, int b) {
