@@ -9,6 +9,7 @@
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "pipelines/survey/prior_odds.h"
 
 namespace sketchsplat {
 namespace {
@@ -320,15 +321,8 @@ double RoundJudge::nats(int stroke, const EdgelFlags* others) const {
 
 double odds_of_round(const std::vector<double>& nats) {
   constexpr double kRounds = 0.5, kEdges = 1;  // known beforehand
-  constexpr int kRepeats = 50;                 // of expectation and maximization
-  double odds = kRounds / kEdges;
-  for (int k = 0; k < kRepeats; ++k) {
-    double rounds = kRounds;
-    for (const double n : nats) rounds += 1 / (1 + std::exp(-n) / odds);
-    odds = rounds / (kRounds + kEdges + double(nats.size()) - rounds);
-  }
   // Edges that err look like rounds, all of them at once: they do not make one another rounds.
-  return std::min(odds, kRounds / kEdges);
+  return std::min(most_probable_odds(nats, kRounds, kEdges), kRounds / kEdges);
 }
 
 }  // namespace sketchsplat

@@ -9,6 +9,7 @@
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
 #include "pipelines/survey/observe.h"
+#include "pipelines/survey/prior_odds.h"
 #include "pipelines/survey/round_judge.h"
 #include "topology/core/description.h"
 
@@ -16,18 +17,17 @@ namespace sketchsplat {
 namespace {
 
 // Number of views in which edgels that nobody owns yet are a good part of a stroke.
-int claim(const StrokeObservation& o, int stroke, const EdgelFlags& owned,
-          std::vector<int>* per_view) {
+int claim(const StrokeObservation& o, int stroke, const EdgelFlags& owned) {
   int views = 0;
-  std::fill(per_view->begin(), per_view->end(), 0);
+  std::vector<int> per_view(owned.size());
   for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i)
     for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m) {
       const SampleMatch& match = o.matches.matches[m];
       if (owned[match.view][match.edgel]) continue;
-      ++(*per_view)[match.view];
+      ++per_view[match.view];
     }
   const int needed = std::max(1, o.strokes[stroke].samples / 5);
-  for (int n : *per_view) views += n >= needed;
+  for (int n : per_view) views += n >= needed;
   return views;
 }
 
@@ -116,15 +116,8 @@ double edge_nats(double nothing, double round, double round_odds) {
 
 double odds_of_edge(const std::vector<double>& nats) {
   constexpr double kEdges = 1, kAccidents = 5;  // known beforehand: few strokes say little
-  constexpr int kRepeats = 50;                  // of expectation and maximization
-  double odds = 1;
-  for (int k = 0; k < kRepeats; ++k) {
-    double edges = kEdges;
-    for (const double n : nats) edges += 1 / (1 + std::exp(-n) / odds);
-    odds = edges / (kEdges + kAccidents + double(nats.size()) - edges);
-  }
   // Among many accidents, what the views show must do.
-  return std::max(odds, 1.0);
+  return std::max(most_probable_odds(nats, kEdges, kAccidents), 1.0);
 }
 
 const char* verdict_name(Verdict verdict) {
@@ -134,7 +127,7 @@ const char* verdict_name(Verdict verdict) {
 
 namespace {
 
-// What is known of the strokes before any of them is chosen.
+// Chooses strokes one after the other, as often as asked; what is observed of them once stays.
 class Greedy {
  public:
   Greedy(const Sketch& sketch, const EdgeWorld& world, const SelectOptions& options)
@@ -221,23 +214,19 @@ class Greedy {
     return sum;
   }
 
-  int claimed(int i, const EdgelFlags& owned) const {
-    std::vector<int> per_view(world_.views.size());
-    return claim(o_, i, owned, &per_view);
-  }
-
   Verdict judge(int i, Selection* result) {
     if (rim_[i]) return Verdict::kRound;
     if (o_.strokes[i].length_px < options_.min_length_px) return Verdict::kShort;
     // Where two edges run side by side, the better one has explained its edgels already.
     const double places = own_cover(o_, i, options_.min_views, owned_) * o_.strokes[i].samples;
     Verdict verdict;
-    if (!known(i) && (claimed(i, owned_) < options_.min_views || kOutlierNats * places < price(i)))
+    if (!known(i) &&
+        (claim(o_, i, owned_) < options_.min_views || kOutlierNats * places < price(i)))
       verdict =
           judge_.nats(i, nullptr) > options_.least_nats ? Verdict::kRedundant : Verdict::kUnlikely;
     else
       verdict = judge_by(owned_, i, result);
-    if (verdict != Verdict::kKept && (known(i) || claimed(i, explained_) >= options_.min_views))
+    if (verdict != Verdict::kKept && (known(i) || claim(o_, i, explained_) >= options_.min_views))
       verdict = judge_by(explained_, i, result);
     return verdict;
   }
@@ -280,7 +269,7 @@ Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
                          const SelectOptions& options) {
   Greedy greedy(sketch, world, options);
   if (options.edge_odds > 0) return greedy.choose(options.edge_odds);
-  greedy.choose(1);
+  greedy.choose(1);  // which tells the likelihood ratios of what no better stroke explains
   return greedy.choose(odds_of_edge(greedy.ratios()));
 }
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "gmock/gmock.h"
+#include "tests/support/strokes.h"
 #include "tests/topology/solids.h"
 #include "topology/brep/solid_step.h"
 #include "topology/faces/find_planes.h"
@@ -184,9 +185,8 @@ TEST(CrossingCells, ThinShellsDoNotRunThroughThemselves) {
     surfaces.back().strokes.clear();
     for (const double z : {0.0, 1.2}) {
       surfaces.back().strokes.push_back(sketch.size());
-      sketch.add_stroke(StrokeKind::kCircle, -1, -1,
-                        {Eigen::Vector3d(0, 0, z),
-                         Eigen::Vector3d(0, 0, std::sqrt(inner * inner - (z - 0.3) * (z - 0.3)))});
+      test::add_circle(&sketch, {0, 0, z},
+                       {0, 0, std::sqrt(inner * inner - (z - 0.3) * (z - 0.3))});
     }
     const std::vector<Eigen::Matrix3Xd> polylines = polylines_of(sketch, 128);
     std::vector<Cell> cells;
