@@ -60,15 +60,54 @@ bool is_believable(const OIIO::ImageSpec& spec, const char* path, std::string* f
   return false;
 }
 
-bool read_planes(const char* path, bool header_only, Planes* planes, std::string* found) {
+struct Signature {
+  int at;  // byte
+  std::string bytes;
+  const char* format;  // OpenImageIO's name
+};
+
+/// The format of a file by its first bytes; by its name where these tell nothing.
+std::string format_of(const char* path) {
+  using namespace std::string_literals;
+  static const std::vector<Signature> kSignatures = {{0, "II*\0"s, "tiff"},
+                                                     {0, "MM\0*"s, "tiff"},
+                                                     {0, "II+\0"s, "tiff"},
+                                                     {0, "MM\0+"s, "tiff"},
+                                                     {0, "v/1\1"s, "openexr"},
+                                                     {0, "\xff\xd8\xff", "jpeg"},
+                                                     {0, "\x89PNG\r\n", "png"},
+                                                     {8, "WEBP", "webp"},
+                                                     {0, "BM", "bmp"},
+                                                     {0, "#?RADIANCE", "hdr"},
+                                                     {0, "#?RGBE", "hdr"},
+                                                     {0, "GIF8", "gif"},
+                                                     {4, "jP  \r\n\x87\n", "jpeg2000"},
+                                                     {4, "ftyphei", "heif"},
+                                                     {4, "ftypmif1", "heif"},
+                                                     {0, "8BPS", "psd"}};
+  char head[16] = {};
+  OIIO::Filesystem::read_bytes(path, head, sizeof head);
+  for (const Signature& s : kSignatures)
+    if (s.bytes.compare(0, std::string::npos, head + s.at, s.bytes.size()) == 0) return s.format;
+  return OIIO::Filesystem::extension(path, false);
+}
+
+/// By the reader of the file's format. ImageInput::open(path) would hand a broken file to the
+/// readers of all other formats, which takes longer and offers it more code to break.
+std::unique_ptr<OIIO::ImageInput> open_image(const char* path, OIIO::ImageSpec* spec,
+                                             std::string* found) {
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &config);
-  if (!input) {
-    *found = OIIO::geterror();
-    return false;
-  }
-  const OIIO::ImageSpec spec = input->spec();
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format_of(path));
+  if (input && input->open(path, *spec, config)) return input;
+  *found = input ? input->geterror() : OIIO::geterror();
+  return nullptr;
+}
+
+bool read_planes(const char* path, bool header_only, Planes* planes, std::string* found) {
+  OIIO::ImageSpec spec;
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(path, &spec, found);
+  if (!input) return false;
   const std::vector<int> channels = channels_to_read(spec);
   if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || channels.empty()) {
     *found = "no two-dimensional image with colours";
@@ -129,13 +168,10 @@ bool write_exr(const char* path, const FloatPlanes& planes, bool half, std::stri
 }
 
 bool read_exr(const char* path, FloatPlanes* planes, std::string* found) {
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
-  if (!input) {
-    *found = OIIO::geterror();
-    return false;
-  }
+  OIIO::ImageSpec spec;
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(path, &spec, found);
+  if (!input) return false;
   input->threads(1);
-  const OIIO::ImageSpec spec = input->spec();
   if (!is_believable(spec, path, found)) return false;
   const size_t channels = size_t(spec.nchannels), pixels = size_t(spec.width) * spec.height;
   std::vector<float> interleaved(pixels * channels);

@@ -162,6 +162,19 @@ TEST(ReadPicture, PremultipliedFilesAreDividedByAlphaAndOthersAreNot) {
       << "a colour above alpha cannot be premultiplied";
 }
 
+// What a file is called says little, and a broken one is its own format's business alone.
+TEST(ReadPicture, FormatsAreToldByTheirFirstBytes) {
+  const TempFolder folder;
+  const std::string tiff = tiff_of_one_pixel(2, "\x33\x66\x99\x80");
+  for (const char* name : {"a.tif", "a.png", "a.bmp", "a"}) {
+    const Picture p = read_picture(folder.write(name, tiff));
+    EXPECT_THAT(p.red.data, ElementsAre(FloatEq(0.2f))) << name;
+    EXPECT_EQ(read_image_size(folder.file(name)).width, 1) << name;
+  }
+  EXPECT_THAT(what_is_found(folder.write("b.bmp", tiff.substr(0, 20))), HasSubstr("directory"));
+  EXPECT_THROW(read_picture(folder.write("c.tif", "BM" + tiff)), InputError);
+}
+
 TEST(ReadPicture, TruncatedPngIsRefusedWhereverItIsCut) {
   const TempFolder folder;
   const std::string whole = folder.file("whole.png");
