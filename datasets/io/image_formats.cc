@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "datasets/io/exr_header.h"
 #include "datasets/io/image_planes.h"
 
 namespace sketchsplat {
@@ -53,7 +54,8 @@ bool is_believable(const OIIO::ImageSpec& spec, const char* path, std::string* f
   // OpenImageIO takes memory for a whole strip of a TIFF, which may claim more rows than the image.
   const std::uint64_t rows = std::max(spec.height, spec.get_int_attribute("tiff:RowsPerStrip"));
   const bool too_tall = !too_many && rows > kMostPixels / std::uint64_t(std::max(1, spec.width));
-  if (!too_many && !too_deep && !too_tall && spec.image_bytes() / 20000 <= bytes) return true;
+  if (!too_many && !too_deep && !too_tall && spec.scanline_bytes() * rows / 20000 <= bytes)
+    return true;
   *found = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels of " +
            std::to_string(spec.nchannels) + " numbers in " + std::to_string(bytes) + " bytes" +
            (too_tall ? ", in strips of " + std::to_string(rows) + " rows" : "");
@@ -92,13 +94,27 @@ std::string format_of(const char* path) {
   return OIIO::Filesystem::extension(path, false);
 }
 
+constexpr size_t kMostHeader = 1 << 20;  // bytes of an OpenEXR file's headers that are looked at
+
+bool exr_is_believable(const char* path) {
+  const std::uint64_t size = OIIO::Filesystem::file_size(path);
+  std::string head(std::min<std::uint64_t>(size, kMostHeader), '\0');
+  head.resize(OIIO::Filesystem::read_bytes(path, &head[0], head.size()));
+  return exr_sizes_are_believable(head, size);
+}
+
 /// By the reader of the file's format. ImageInput::open(path) would hand a broken file to the
 /// readers of all other formats, which takes longer and offers it more code to break.
 std::unique_ptr<OIIO::ImageInput> open_image(const char* path, OIIO::ImageSpec* spec,
                                              std::string* found) {
+  const std::string format = format_of(path);
+  if (format == "openexr" && !exr_is_believable(path)) {
+    *found = "a header that claims more bytes than the file has";
+    return nullptr;
+  }
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format_of(path));
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
   if (input && input->open(path, *spec, config)) return input;
   *found = input ? input->geterror() : OIIO::geterror();
   return nullptr;

@@ -28,8 +28,8 @@ struct FloatPlanes {
 /// What the plug-in image_formats does. All return false and say in `found` why they cannot. Safe
 /// from many threads.
 struct ImagePlugin {
-  /// Decodes a file of any format that OpenImageIO knows, or its header alone (then no plane is
-  /// filled).
+  /// Decodes a file of any format that OpenImageIO knows, told by its first bytes, then by its
+  /// name, or its header alone (then no plane is filled).
   bool (*read)(const char* path, bool header_only, Planes* planes, std::string* found);
   /// OpenEXR, whatever the file is called; `half`: 16 bits per number, else 32.
   bool (*write_exr)(const char* path, const FloatPlanes& planes, bool half, std::string* found);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/io/float_image_io.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "datasets/types/errors.h"
@@ -55,6 +58,31 @@ TEST(Exr, WhatCannotBeReadOrWrittenIsSaidAndLeavesNothing) {
   EXPECT_THROW(read_exr(folder.write("text.exr", "no picture")), InputError);
   EXPECT_THROW(write_exr(folder.path() + "/no/depth.exr", {{"Z", ramp(4, 4, 0, 1)}}, false),
                OutputError);
+}
+
+// A name in the header says that it is 2 GB long: OpenEXR would take them before it reads.
+TEST(Exr, AHeaderThatClaimsMoreThanTheFileHasIsRefusedBeforeMemoryIsTaken) {
+  const TempFolder folder;
+  const std::string path = folder.file("depth.exr");
+  write_exr(path, {{"Z", ramp(8, 8, 0, 1)}}, false);
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string attribute("capDate\0string\0", 15);
+  const size_t at = bytes.find(attribute);
+  ASSERT_NE(at, std::string::npos);
+  const auto refused = [&](const std::string& size) {
+    std::string claims = bytes;
+    claims.replace(at + attribute.size(), 4, size);
+    try {
+      read_exr(folder.write("claims.exr", claims));
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(std::string("\x13\0\0\0", 4)), "");  // as it was
+  EXPECT_THAT(refused(std::string("\0\0\0\x7f", 4)), testing::HasSubstr("claims more bytes"));
+  EXPECT_THAT(refused("\xff\xff\xff\xff"), testing::HasSubstr("claims more bytes"));
 }
 
 TEST(Jpeg, LowerQualityLosesMoreAndAlphaNothing) {
