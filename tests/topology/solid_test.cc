@@ -268,6 +268,20 @@ TEST(Evidence, AFaceThatPlacesAreSeenThroughHasAPrice) {
   }
 }
 
+// A sliver has a row of points, not millions of columns.
+TEST(Cells, PointsWithinAreAboutAsManyAsAskedForHoweverThinTheCell) {
+  const SurfaceStrokes plane{{SurfaceKind::kPlane, {0, 0, 0}, {0, 0, 1}}, {}, false};
+  for (const double height : {1.0, 1e-3, 1e-13, 0.0}) {
+    Cell cell;
+    cell.polygons.resize(1);
+    cell.polygons[0].resize(2, 4);
+    cell.polygons[0] << 0, 1, 1, 0, 0, 0, height, height;
+    const size_t count = points_within(cell, layout_of(plane), 20).size();
+    EXPECT_GE(count, height > 0 ? 10u : 0u) << height;
+    EXPECT_LE(count, 40u) << height;
+  }
+}
+
 TEST(CellIndex, SaysWhatTheSlowReferenceSays) {
   std::mt19937 random(4);
   for (const Solid& solid : {plate_with_hole(0.5), half_cylinder(), cone_solid(0.5)}) {

@@ -202,8 +202,11 @@ std::vector<Vector3d> points_within(const Cell& cell, const Layout& layout, int 
   for (int finer = 1; finer <= 8 && int(points.size()) < (count + 1) / 2; finer *= 2) {
     points.clear();
     const double step = std::sqrt(box.size.x() * box.size.y() / count) / finer;
-    const int nx = std::max(1, int(box.size.x() / step)),
-              ny = std::max(1, int(box.size.y() / step));
+    // A sliver has one row, of as many columns as it takes.
+    const auto places = [&](double side) {
+      return int(std::max(1.0, std::min(side / step, double(count) * finer)));
+    };
+    const int nx = places(box.size.x()), ny = places(box.size.y());
     for (int i = 0; i < nx; ++i)
       for (int k = 0; k < ny; ++k) {
         const Vector2d p = box.at((i + 0.5) / nx, (k + 0.5) / ny);
