@@ -17,11 +17,12 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kDirections = 8;    // of edgels, over 180 deg
-constexpr double kWidest = 0.1;   // [extents] reach of the first steps
-constexpr double kNear = 4;       // [px] the edgels' own look-up reaches as far
-constexpr double kNearest = 1.5;  // [px] reach of the last steps
-constexpr int kSteps = 3;         // per reach
+constexpr int kDirections = 8;                       // of edgels, over 180 deg
+constexpr double kWidest = 0.1;                      // [extents] reach of the first steps
+constexpr double kNear = 4;                          // [px] the edgels' own look-up reaches as far
+constexpr double kNearest = 1.5;                     // [px] reach of the last steps
+constexpr int kFarSteps = 2, kSteps = 3;             // per reach
+constexpr double kFarSpacing = 6, kNearSpacing = 2;  // [px] at least, of places on the strokes
 constexpr double kCell = 4;       // [px] of the look-up, which is for reaches beyond kNear
 constexpr double kFarPlaces = 3;  // on a stroke in a view whose errors are their own: model errors
 constexpr double kNearPlaces = 12;  // the same at the end: the edgels' errors
@@ -29,7 +30,7 @@ constexpr double kNearSigma = 0.4;  // [px] of an edgel at the end
 constexpr int kBlock = 8;           // edgels in a row that belong to one stroke
 constexpr int kModes = 2;           // along which starts are tried
 constexpr double kFar = 1.3;        // standard deviations that these are moved by
-constexpr double kHopeless = 0.5;   // of the edgels within kNear, at least, after the first steps
+constexpr double kHopeless = 0.65;  // of the edgels within kNear, at least, after the first steps
 
 int direction_of(double nx, double ny) {
   const double turn = std::atan2(ny, nx) / M_PI + 1;  // the sign of a normal means nothing
@@ -258,7 +259,8 @@ SampleJacobian jacobian_of(const Family& family, const Sketch& placed, int strok
 Sibling FamilyFit::step(const Sibling& now, double reach_px) const {
   const Sketch s = sketch(now);
   const bool far = reach_px > kNear;
-  const SampleLayout layout = plan_samples(s, std::max(2.0, reach_px / 3) * world_.footprint);
+  const SampleLayout layout = plan_samples(
+      s, (far ? std::max(kFarSpacing, reach_px / 2) : kNearSpacing) * world_.footprint);
   const Samples samples = evaluate_samples(s, layout);
   const CurvePoints points{samples.position, samples.tangent, layout.first};
   MatchOptions match;
@@ -315,7 +317,7 @@ Sibling FamilyFit::step(const Sibling& now, double reach_px) const {
 
 Sibling FamilyFit::fit(Sibling sibling) const {
   for (double reach = widest_px_; reach > kNear; reach /= 1.6)
-    for (int k = 0; k < kSteps; ++k) sibling = step(sibling, reach);
+    for (int k = 0; k < kFarSteps; ++k) sibling = step(sibling, reach);
   if (explained(sketch(sibling), kNear) < kHopeless) return sibling;
   for (const double reach : {kNear, 0.5 * (kNear + kNearest), kNearest, kNearest})
     for (int k = 0; k < kSteps; ++k) sibling = step(sibling, reach);

@@ -17,9 +17,10 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kFitViews = 16;       // that most steps of the fit look at
-constexpr int kStarts = 3;          // that are followed to the end, at most
-constexpr double kGood = 0.9;       // of the edgels explained: no other start is tried
+constexpr int kFitViews = 8;      // that most steps of the fit look at
+constexpr int kStarts = 3;        // that are followed to the end, at most
+constexpr double kGood = 0.9;     // of the edgels explained: no other start is tried
+constexpr double kForeign = 0.5;  // of the edgels explained by the best start: less, and none will
 constexpr double kExplained = 0.8;  // of the edgels, at least, by a sibling
 constexpr double kPromising = 0.7;  // of the edgels, at least, before strokes are set free
 constexpr double kSeen = 0.6;       // of its length that the views show, at least
@@ -50,7 +51,7 @@ Best best_fit(const FamilyFit& fit) {
     const Sketch sketch = fit.sketch(fit.fit(starts[k]));
     const double explained = fit.explained(sketch);
     if (explained > best.explained) best = {sketch, explained};
-    if (best.explained > kGood) break;
+    if (best.explained > kGood || best.explained < kForeign) break;
   }
   return best;
 }
