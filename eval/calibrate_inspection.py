@@ -20,6 +20,7 @@ Scenes and results that are there already are used again: a run may be stopped a
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import random
@@ -42,7 +43,8 @@ TOLERANCES = [0.0002, 0.0005, 0.001]  # of the longest side, which is 1
 
 
 def run(arguments, allowed=(0,)):
-    done = subprocess.run(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    done = subprocess.run(arguments, env={**os.environ, "OMP_NUM_THREADS": "1"},
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if done.returncode not in allowed:
         sys.exit(" ".join(arguments) + "\n" + done.stderr)
     return done.returncode
@@ -279,14 +281,19 @@ def reliability(title, rows):
     print(f"  largest difference of a tenth with 50 edges and more: {worst:.3f}")
 
 
+def of_each(scenes, ask):
+    """ask(scene) of all, a process of one thread per core."""
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(ask, scenes))
+
+
 def report(condition, scenes, binary, options, draws):
     """The tables of one condition; its rows by name."""
     out = {}
     of = [s for s in scenes if s.condition == condition]
     for name, ask in [("known", lambda s: known_edges(s, binary, options)),
                       ("within", lambda s: judged_edges(s, binary, options, draws))]:
-        rows = {s: ask(s) for s in of}
-        everything = [r for s in of for r in rows[s]]
+        everything = [row for rows in of_each(of, ask) for row in rows]
         for tolerance in TOLERANCES:
             reliability(f"{name}, {condition}, tolerance {1000 * tolerance:g} thousandths",
                         [r for r in everything if r[0] == tolerance])
@@ -313,7 +320,8 @@ def main():
     def made(seeds):
         scenes = [Scene(arguments.work, part, condition, seed) for condition in conditions
                   for seed in seeds for part in arguments.parts]
-        return [s for s in scenes if s.make(binary)]
+        there = of_each(scenes, lambda scene: scene.make(binary))
+        return [scene for scene, made in zip(scenes, there) if made]
 
     scenes, fitted = made(arguments.seeds), made(arguments.fit_seeds) if arguments.fit else []
     if arguments.scenes_only:

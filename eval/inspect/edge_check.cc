@@ -74,6 +74,10 @@ MeasuredEdge measure_edge(const EdgeMatch& match, const NominalEdge& edge, const
     const std::vector<EdgePlace> places = places_beside(match, s, straight ? 2 : kPlaces);
     PieceErrors errors = piece_errors(measured, places, edge.kind, held, sigma);
     errors.model.between = straight ? 1 : kBetween;
+    // A coarse spline waves about what it stands for.
+    const bool coarse = measured.strokes[s].kind == StrokeKind::kBezier &&
+                        match.strokes.size() < edge.strokes.size();
+    errors.simpler = errors.simpler || coarse;
     check.sigma = std::max(check.sigma, errors.sigma);
     check.systematic = std::max(check.systematic, errors.systematic);
     check.open = check.open || is_open(measured, s);

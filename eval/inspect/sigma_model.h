@@ -117,7 +117,9 @@ struct PieceErrors {
   DeviationModel model;
   ErrorShares shares = {};
   int stated = 0;         ///< of the modes, the last ones: of the scale, whose sigma is known
-  bool simpler = false;   ///< than the nominal edge: what of its shape differs says nothing
+  /// Its kind than that of the nominal edge, or a spline of fewer cubics: what of its shape differs
+  /// says nothing.
+  bool simpler = false;
   double sigma = 0;       ///< largest standard deviation, from the edgels
   double systematic = 0;  ///< the same, from what edgels do not know: place, curvature, scale, pose
 };

@@ -76,6 +76,40 @@ TEST(Inspect, WhatIsNotKnownWellEnoughIsUndecided) {
   EXPECT_LT(i.edges[0].known, 0.95);
 }
 
+// On the plate's top, from slopes: a sine of this height by so many cubics.
+Sketch with_wave(int pieces, double height) {
+  Sketch s = plate();
+  constexpr double kBegin = 20, kLength = 60, kTurn = 2 * M_PI / 30;
+  const double step = kLength / pieces;
+  const auto at = [&](double x) {
+    return Vector3d(x, 35 + height * std::sin(kTurn * (x - kBegin)), 10);
+  };
+  const auto slope = [&](double x) {
+    return Vector3d(1, height * kTurn * std::cos(kTurn * (x - kBegin)), 0);
+  };
+  int last = s.add_node(at(kBegin));
+  for (int k = 0; k < pieces; ++k) {
+    const double from = kBegin + k * step, to = from + step;
+    const int next = s.add_node(at(to));
+    s.add_stroke(StrokeKind::kBezier, last, next,
+                 {at(from) + step / 3 * slope(from), at(to) - step / 3 * slope(to)});
+    last = next;
+  }
+  return s;
+}
+
+// What coarse cubics differ in is their own; what as many differ in is the part's.
+TEST(Inspect, FewerCubicsThanNominalOnesSayNothingOfWaves) {
+  const Sketch measured = with_sigma(with_wave(8, 3), 0.004);
+  const EdgeCheck coarse =
+      inspect(make_nominal(with_wave(24, 3), "fine"), measured, 0, within(0.015)).edges.back();
+  EXPECT_GT(coarse.largest, 0.015);
+  EXPECT_GT(coarse.within.likely, 0.5);
+  const EdgeCheck other =
+      inspect(make_nominal(with_wave(8, 3.2), "higher"), measured, 0, within(0.015)).edges.back();
+  EXPECT_EQ(other.verdict, Judgement::kOut);
+}
+
 TEST(Inspect, AMissingEdgeIsUndecidedAndOneThatCannotBeSeenIsNotJudged) {
   std::vector<bool> keep(size_t(plate().size()), true);
   keep[0] = keep[17] = false;
