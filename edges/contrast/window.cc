@@ -23,8 +23,16 @@ Window::Window(const Vector3d& normal, const std::vector<Eigen::Matrix3Xd>& curv
     }
 }
 
+Window Window::one_side(const Vector3d& normal, const Vector3d& point) {
+  Window out(normal, std::vector<Eigen::Matrix3Xd>());
+  out.middle_ = point;
+  out.one_side_ = true;
+  return out;
+}
+
 bool Window::lets_through(const Vector3d& point, const Vector3d& camera) const {
   const double from = normal_.dot(point - middle_), to = normal_.dot(camera - middle_);
+  if (one_side_) return to > 0;
   if (!(from * to < 0)) return false;
   const Vector2d at = frame_ * (point + from / (from - to) * (camera - point) - middle_);
   bool inside = false;

@@ -29,6 +29,8 @@ constexpr int kHastyPoints = 40;      // that are read at most, or nearly
 constexpr double kPromise = -1;       // [nat] of a hasty look that asks for a thorough one
 constexpr double kNearAsidePx = 6;    // [px] of a copy that shows what is no edge; more by turns
 constexpr int kAsides = 7;
+constexpr double kMostAsidePx = 30;          // [px] further, of closed ones
+constexpr int kNulls = 120, kMostNulls = 8;  // copies that tell a threshold; of one candidate
 constexpr int kPasses = 3;
 constexpr int kMostCandidates = 8000;  // a sketch that leads to expect more tells nothing
 constexpr double kGroup = 2;           // times the nats of one, that all of a group must have
@@ -49,12 +51,16 @@ ContrastJudge judge_beside(const Sketch& sketch, const EdgeWorld& world,
   return {world, strokes, explained, options};
 }
 
-// What candidates get where there is no edge: a copy of each, moved aside in space, all in
-// different directions.
+// What candidates get where there is no edge: copies of each, moved aside in space, all in
+// different directions; beside a small closed one by its size, so that it does not cross itself.
 CurvePoints moved_aside(const CurvePoints& points, int number, double px) {
   const double golden = M_PI * (3 - std::sqrt(5.0));
   const double z = 1 - 2 * std::fmod((number + 0.5) * 0.618033988749895, 1.0);
-  const double r = std::sqrt(1 - z * z), far = px * (kNearAsidePx + number % kAsides);
+  const Eigen::Matrix3Xd& p = points.position;
+  const bool closed = (p.col(0) - p.col(p.cols() - 1)).norm() < 2 * px;
+  const double size = closed ? (p.col(0) - p.col(p.cols() / 2)).norm() : 0;
+  const double r = std::sqrt(1 - z * z);
+  const double far = std::min(size, kMostAsidePx * px) + px * (kNearAsidePx + number % kAsides);
   CurvePoints out = points;
   out.position.colwise() +=
       far * Eigen::Vector3d(r * std::cos(golden * number), r * std::sin(golden * number), z);
@@ -88,13 +94,17 @@ bool is_rim(const EdgeWorld& world, const CurvePoints& points, double least) {
 std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& world,
                                       const KnownCurves& known, const ContrastJudge& judge,
                                       int* depths) {
-  const std::vector<Levels> levels = find_levels(sketch, kLevelPx * world.footprint);
+  const double tolerance = kLevelPx * world.footprint;
+  const std::vector<Levels> levels = find_levels(sketch, tolerance);
   // Of what several tell the first counts: that which knows from where it is seen.
   std::vector<Candidate> out = depth_copies(sketch, levels, known, judge, world, depths);
   for (const std::vector<Candidate>& more :
        {level_copies(sketch, levels), mirror_copies(sketch, levels),
-        circle_patterns(sketch, kLevelPx * world.footprint)})
-    out.insert(out.end(), more.begin(), more.end());
+        circle_patterns(sketch, tolerance)})
+    for (const Candidate& c : more) {
+      out.push_back(c);
+      settle(levels, tolerance, &out.back());
+    }
   return out;
 }
 
@@ -120,9 +130,9 @@ struct Judged {
   std::vector<Candidate> candidates;
   std::vector<CurvePoints> points;
   std::vector<double> nats, nulls;
-  int tests = 0;
   std::map<int, Group> groups;  // of more than one
   int depths = 0;               // that were tried for groups
+  int tests() const { return int(candidates.size()) + depths; }
 };
 
 // Several sources may tell of one place, from either end.
@@ -139,12 +149,44 @@ const std::vector<Window>& windows_of(const Candidate& c) {
   return c.windows ? *c.windows : none;
 }
 
+// From where a candidate may be seen: from anywhere, or, as the border of a face in its own plane,
+// from one side of that. All are as likely.
+using Windows = std::shared_ptr<const std::vector<Window>>;
+std::vector<Windows> ways_to_see(const Candidate& c) {
+  const Eigen::Vector3d normal = plane_normal(c.kind, c.curve);
+  if (c.windows || c.group >= 0 || !(normal.norm() > 0)) return {c.windows};
+  const auto one_side = [&](const Eigen::Vector3d& of) {
+    return std::make_shared<const std::vector<Window>>(1, Window::one_side(of, c.curve.p[0]));
+  };
+  return {nullptr, one_side(normal), one_side(-normal)};
+}
+
+struct Seen {
+  double nats = -INFINITY;
+  Windows windows;  // of the likeliest way
+};
+// `moved`: the points of the candidate, or a copy of them.
+Seen seen_at_best(const Candidate& c, const CurvePoints& moved, const ContrastJudge& judge) {
+  const int every = std::max(kHaste, int(moved.position.cols()) / kHastyPoints);
+  Seen best;
+  double sum = 0;
+  const std::vector<Windows> ways = ways_to_see(c);
+  for (const Windows& way : ways) {
+    const std::vector<Window> windows = way ? *way : std::vector<Window>();
+    double nats = judge.judge(moved, every, windows).nats;
+    if (nats > kPromise) nats = judge.judge(moved, 1, windows).nats;
+    sum += std::exp(nats) / double(ways.size());
+    if (nats > best.nats) best = {nats, way};
+  }
+  best.nats = std::log(sum);
+  return best;
+}
+
 Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge& judge) {
   const double px = world.footprint;
   const KnownCurves known(sketch, px, kKnownPx * px);
   Judged out;
   const std::vector<Candidate> all = all_candidates(sketch, world, known, judge, &out.depths);
-  out.tests = out.depths;
   if (int(all.size()) > kMostCandidates) return out;
   for (const Candidate& c : all) {
     const CurvePoints points = candidate_points(c, px);
@@ -162,19 +204,18 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
     out.points.push_back(points);
   }
   const int n = int(out.candidates.size());
-  out.tests += n;
+  const int copies = std::clamp(kNulls / std::max(1, n), 1, kMostNulls);
   out.nats.resize(n);
-  out.nulls.assign(n, -INFINITY);
-  const auto nats = [&](const CurvePoints& points, const std::vector<Window>& windows) {
-    const int every = std::max(kHaste, int(points.position.cols()) / kHastyPoints);
-    const double hasty = judge.judge(points, every, windows).nats;
-    return hasty > kPromise ? judge.judge(points, 1, windows).nats : hasty;
-  };
+  out.nulls.assign(size_t(n) * copies, -INFINITY);
   parallel_for(n, 4, [&](int i) {
-    const std::vector<Window>& windows = windows_of(out.candidates[i]);
-    out.nats[i] = nats(out.points[i], windows);
-    const CurvePoints aside = moved_aside(out.points[i], i, px);
-    if (known.share(aside) <= kKnownShare) out.nulls[i] = nats(aside, windows);
+    Candidate& c = out.candidates[i];
+    for (int k = i * copies; k < (i + 1) * copies; ++k) {
+      const CurvePoints aside = moved_aside(out.points[i], k, px);
+      if (known.share(aside) <= kKnownShare) out.nulls[k] = seen_at_best(c, aside, judge).nats;
+    }
+    const Seen seen = seen_at_best(c, out.points[i], judge);
+    out.nats[i] = seen.nats;
+    c.windows = seen.windows;
   });
   out.nulls.erase(std::remove(out.nulls.begin(), out.nulls.end(), -INFINITY), out.nulls.end());
   for (int i = 0; i < n; ++i)
@@ -191,12 +232,13 @@ class Pass {
         options_(options),
         judge_(judge_beside(sketch, world, options.contrast)),
         all_(judged(sketch, world, judge_)),
-        least_(alarm_threshold(all_.nulls, all_.tests, options.false_strokes / kPasses)),
+        least_(
+            alarm_threshold(all_.nulls, all_.candidates.size(), options.false_strokes / kPasses)),
         least_of_group_(kGroup * std::log((all_.depths + double(all_.groups.size())) * kPasses /
                                           options.false_strokes)) {}
 
   MissingEdges run() {
-    out_ = {sketch_, {}, {}, {}, all_.tests};
+    out_ = {sketch_, {}, {}, {}, all_.tests()};
     for (const auto& [number, group] : all_.groups) add_group(group);
     std::vector<int> order(all_.candidates.size());
     std::iota(order.begin(), order.end(), 0);

@@ -25,10 +25,9 @@ struct Direction {
   int count;
 };
 
-// Normal of the plane of a bent stroke; zero if it has none.
-Vector3d normal_of(const Sketch& s, int stroke) {
-  const StrokeKind kind = s.strokes[stroke].kind;
-  const ControlPoints c = control_points(s, stroke);
+}  // namespace
+
+Vector3d plane_normal(StrokeKind kind, const ControlPoints& c) {
   Vector3d n = Vector3d::Zero();
   if (kind == StrokeKind::kCircle) n = c.p[1];
   if (kind == StrokeKind::kEllipse) n = c.p[1].cross(c.p[2]);
@@ -36,6 +35,8 @@ Vector3d normal_of(const Sketch& s, int stroke) {
   if (kind == StrokeKind::kEllipticArc) n = (c.p[1] - c.p[0]).cross(c.p[3] - c.p[0]);
   return n.norm() > 0 ? Vector3d(n.normalized()) : n;
 }
+
+namespace {
 
 void count_direction(const Vector3d& n, std::vector<Direction>* all) {
   const double same = std::cos(kSameDeg * M_PI / 180);
@@ -52,7 +53,7 @@ void count_direction(const Vector3d& n, std::vector<Direction>* all) {
 std::vector<Direction> directions(const Sketch& s) {
   std::vector<Direction> all;
   for (int i = 0; i < s.size(); ++i) {
-    const Vector3d n = normal_of(s, i);
+    const Vector3d n = plane_normal(s.strokes[i].kind, control_points(s, i));
     if (n.norm() > 0) count_direction(n, &all);
   }
   std::vector<std::vector<Vector3d>> ways(s.nodes.cols());  // of the lines at every node
@@ -73,13 +74,13 @@ std::vector<Direction> directions(const Sketch& s) {
   return all;
 }
 
-// Does a stroke lie in a plane across the direction, and how high?
-bool lies_level(const Sketch& s, int stroke, const Vector3d& normal, double tolerance,
-                double* height) {
+// Does a curve lie in a plane across the direction, and how high?
+bool lies_level(StrokeKind kind, const ControlPoints& controls, const Vector3d& normal,
+                double tolerance, double* height) {
   double low = INFINITY, high = -INFINITY;
   for (int k = 0; k < kMostFacets; ++k) {
     Vector3d p, d;
-    evaluate_stroke(s, stroke, k / (kMostFacets - 1), &p, &d);
+    evaluate_curve<double>(kind, controls.p.data(), k / (kMostFacets - 1), &p, &d);
     low = std::min(low, p.dot(normal)), high = std::max(high, p.dot(normal));
   }
   *height = 0.5 * (low + high);
@@ -90,17 +91,22 @@ Levels levels_across(const Sketch& s, const Vector3d& normal, double tolerance) 
   std::vector<std::pair<double, int>> level;
   for (int i = 0; i < s.size(); ++i) {
     double height;
-    if (lies_level(s, i, normal, tolerance, &height)) level.push_back({height, i});
+    if (lies_level(s.strokes[i].kind, control_points(s, i), normal, tolerance, &height))
+      level.push_back({height, i});
   }
   std::sort(level.begin(), level.end());
   Levels out{normal, {}, {}};
   for (size_t begin = 0, end; begin < level.size(); begin = end) {
-    double sum = 0;
+    double sum = 0, weight = 0;
     for (end = begin; end < level.size() &&
                       (end == begin || level[end].first - level[end - 1].first <= 2 * tolerance);
-         ++end)
-      sum += level[end].first;
-    out.height.push_back(sum / double(end - begin));
+         ++end) {
+      // Small rims are known some tenths of a pixel worse than large ones.
+      const double length = stroke_length(s, level[end].second);
+      sum += length * level[end].first;
+      weight += length;
+    }
+    out.height.push_back(weight > 0 ? sum / weight : level[begin].first);
     out.strokes.emplace_back();
     for (size_t k = begin; k < end; ++k) out.strokes.back().push_back(level[k].second);
   }
@@ -136,6 +142,16 @@ Candidate moved(const Candidate& candidate, const Vector3d& by) {
   const int places = is_closed(candidate.kind) ? 1 : candidate.curve.count;
   for (int k = 0; k < places; ++k) out.curve.p[k] += by;
   return out;
+}
+
+void settle(const std::vector<Levels>& levels, double tolerance, Candidate* candidate) {
+  for (const Levels& l : levels) {
+    double height, nearest = tolerance;
+    if (!lies_level(candidate->kind, candidate->curve, l.normal, tolerance, &height)) continue;
+    for (const double h : l.height)
+      if (std::abs(h - height) < std::abs(nearest)) nearest = h - height;
+    if (std::abs(nearest) < tolerance) *candidate = moved(*candidate, nearest * l.normal);
+  }
 }
 
 std::vector<Candidate> level_copies(const Sketch& sketch, const std::vector<Levels>& levels) {

@@ -11,9 +11,12 @@ namespace sketchsplat {
 /// Planes across one direction in which strokes lie: floors, faces, steps of a part.
 struct Levels {
   Eigen::Vector3d normal;                 ///< unit
-  std::vector<double> height;             ///< ascending, along the normal, world units
+  std::vector<double> height;             ///< ascending, along the normal, by the longest strokes
   std::vector<std::vector<int>> strokes;  ///< per level: those that lie in it
 };
+
+/// Unit normal of the plane of a circle, an ellipse or an arc of one; zero of other curves.
+Eigen::Vector3d plane_normal(StrokeKind kind, const ControlPoints& controls);
 
 /// Directions that at least two planar strokes or corners have in common, those of most first, at
 /// most twelve, each with its levels. `tolerance`: distance of a stroke from its level, world
@@ -22,6 +25,10 @@ std::vector<Levels> find_levels(const Sketch& sketch, double tolerance);
 
 /// The curve moved along a vector.
 Candidate moved(const Candidate& candidate, const Eigen::Vector3d& by);
+
+/// Moves a curve that lies in a level, but for `tolerance`, exactly into it, of every direction:
+/// curves are copied from strokes that err, levels are what all of their strokes say together.
+void settle(const std::vector<Levels>& levels, double tolerance, Candidate* candidate);
 
 /// What is in one level, in the other ones: the other rim of a hole, the floor of a pocket whose
 /// depth others share, the far side of a plate. Of every direction the eight levels that hold the

@@ -193,5 +193,13 @@ TEST(AlarmThreshold, KeepsTheRateOfATailOfAnyWidthAndFallsBackOnMarkov) {
   }
 }
 
+// Few ratios above 0, however far below it the others lie.
+TEST(AlarmThreshold, WhatNobodyWouldBelieveSaysNothingOfTheTail) {
+  std::vector<double> near = {5, 4, 3, 2, 1}, far = near;
+  for (int k = 0; k < 45; ++k) near.push_back(-0.1 - 0.01 * k), far.push_back(-20 - k);
+  EXPECT_LT(alarm_threshold(near, 50, 0.05), alarm_threshold(far, 50, 0.05));
+  EXPECT_NEAR(alarm_threshold(far, 50, 0.05), 3 * std::log(5 / 0.05), 1e-9);
+}
+
 }  // namespace
 }  // namespace sketchsplat

@@ -49,6 +49,24 @@ TEST(Candidates, TheOtherRimOfAHoleLiesInTheOtherLevelOfThePlate) {
   EXPECT_TRUE(has_circle(level_copies(s, levels), {0.2, 0.3, 0}, 0.1));
 }
 
+// A small rim errs, and so do its copies; a large one says where the plane is.
+TEST(Candidates, CopiesSettleInTheLevelsThatLargeStrokesTell) {
+  Sketch s;
+  add_circle({0.5, 0.5, 0}, 0.5, &s);
+  add_circle({0.5, 0.5, 0.2}, 0.5, &s);
+  add_circle({0.2, 0.3, 0.2 + 0.7 * kTolerance}, 0.01, &s);
+  const std::vector<Levels> levels = find_levels(s, kTolerance);
+  for (Candidate c : level_copies(s, levels)) {
+    settle(levels, kTolerance, &c);
+    const double z = c.curve.p[0].z();
+    EXPECT_LT(std::min(std::abs(z), std::abs(z - 0.2)), 0.02 * kTolerance);
+  }
+  Candidate elsewhere{StrokeKind::kCircle, control_points(s, 0)};
+  elsewhere.curve.p[0].z() = 0.1;
+  settle(levels, kTolerance, &elsewhere);
+  EXPECT_EQ(elsewhere.curve.p[0].z(), 0.1);
+}
+
 // As on a natural surface, where every stroke is a level of its own.
 TEST(Candidates, CopiesIntoOtherLevelsAreLinearInTheNumberOfStrokes) {
   Sketch s = plate();

@@ -145,5 +145,15 @@ TEST(Window, LetsThroughWhatPassesInsideOfItsLoopFromTheOtherSide) {
   EXPECT_FALSE(any_lets_through({}, inside, above));
 }
 
+TEST(Window, OfOneSideOfAPlaneIsOpenToTheCamerasThere) {
+  const Vector3d rim(1, 1, 1);
+  const Window top = Window::one_side(Vector3d(0, 0, 3), rim);
+  const Window bottom = Window::one_side(Vector3d(0, 0, -3), rim);
+  EXPECT_TRUE(top.lets_through(rim, Vector3d(9, 1, 1.1)));
+  EXPECT_FALSE(bottom.lets_through(rim, Vector3d(9, 1, 1.1)));
+  EXPECT_FALSE(top.lets_through(rim, Vector3d(1, 1, 0)));
+  EXPECT_TRUE(bottom.lets_through(rim, Vector3d(1, 1, 0)));
+}
+
 }  // namespace
 }  // namespace sketchsplat
