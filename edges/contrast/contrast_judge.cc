@@ -70,7 +70,6 @@ ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every,
                                       const std::vector<Window>& windows) const {
   const std::vector<int> first = pieces_of(int(curve.position.cols()), options_.piece_px);
   const int pieces = int(first.size()) - 1;
-  Pool whole(options_);
   ContrastEvidence out;
   out.piece_nats.assign(pieces, 0);
   // What lies along a candidate by accident lies along all of its pieces.
@@ -104,13 +103,24 @@ ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every,
     const ContrastReading& all = readings[pieces];
     if (all.tells && pieces > 1 && !any_shut)
       sum = std::log(0.5 * std::exp(sum) + 0.5 * std::exp(contrast_ratio(all.z, all.freedom)));
-    whole.add(doubted(sum), 2 * sure > tell);
+    out.says.push_back({v, doubted(sum), 2 * sure > tell});
     if (!(sum > 0)) continue;
     ++out.views;
     for (int p = 0; p < pieces; ++p) out.piece_nats[p] += each[p];
   }
+  Pool whole(options_);
+  for (const ViewSays& s : out.says) whole.add(s.ratio, s.sure);
   out.nats = whole.nats();
   return out;
+}
+
+double ContrastJudge::nats_through(const ContrastEvidence& evidence, const Window& window,
+                                   const Eigen::Vector3d& point) const {
+  Pool pool(options_);
+  for (const ViewSays& s : evidence.says)
+    if (window.lets_through(point, world_.views[s.view].center_in_world()))
+      pool.add(s.ratio, s.sure);
+  return pool.nats();
 }
 
 void ContrastJudge::take(const CurvePoints& curve) {

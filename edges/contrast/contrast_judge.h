@@ -15,6 +15,13 @@ struct ContrastOptions {
   double accident = 0.05;    ///< views in which something else lies along a candidate
 };
 
+/// What one view says of a candidate.
+struct ViewSays {
+  int view = 0;
+  double ratio = 1;   ///< likelihood ratio of an edge and of none, if the view would show an edge
+  bool sure = false;  ///< nothing hides the candidate from it, as the hull tells
+};
+
 /// What the pictures of all views say about one candidate.
 struct ContrastEvidence {
   /// [nat] logarithm of the likelihood ratio of an edge and of none. By Markov's inequality a
@@ -22,6 +29,7 @@ struct ContrastEvidence {
   double nats = 0;
   std::vector<double> piece_nats;  ///< of each piece, of the views that show the whole
   int views = 0;                   ///< that show it rather than not
+  std::vector<ViewSays> says;      ///< of the views that say something
 };
 
 /// Judges candidates for edges by the pictures, without edgels: a matched filter along the whole
@@ -44,6 +52,10 @@ class ContrastJudge {
   /// as the curve is in a pocket or a hole; none: nobody knows from where it is seen.
   ContrastEvidence judge(const CurvePoints& curve, int every = 1,
                          const std::vector<Window>& windows = {}) const;
+
+  /// The nats of the views alone that see a point of the candidate through a window.
+  double nats_through(const ContrastEvidence& evidence, const Window& window,
+                      const Eigen::Vector3d& point) const;
 
   /// What the curve shows from now on tells of nothing else.
   void take(const CurvePoints& curve);

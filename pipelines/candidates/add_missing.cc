@@ -29,8 +29,8 @@ constexpr int kHastyPoints = 40;      // that are read at most, or nearly
 constexpr double kPromise = -1;       // [nat] of a hasty look that asks for a thorough one
 constexpr double kNearAsidePx = 6;    // [px] of a copy that shows what is no edge; more by turns
 constexpr int kAsides = 7;
-constexpr double kMostAsidePx = 30;          // [px] further, of closed ones
-constexpr int kNulls = 120, kMostNulls = 8;  // copies that tell a threshold; of one candidate
+constexpr double kMostAsidePx = 30;         // [px] further, of closed ones
+constexpr int kNulls = 80, kMostNulls = 8;  // copies that tell a threshold; of one candidate
 constexpr int kPasses = 3;
 constexpr int kMostCandidates = 8000;  // a sketch that leads to expect more tells nothing
 constexpr double kGroup = 2;           // times the nats of one, that all of a group must have
@@ -149,37 +149,33 @@ const std::vector<Window>& windows_of(const Candidate& c) {
   return c.windows ? *c.windows : none;
 }
 
-// From where a candidate may be seen: from anywhere, or, as the border of a face in its own plane,
-// from one side of that. All are as likely.
 using Windows = std::shared_ptr<const std::vector<Window>>;
-std::vector<Windows> ways_to_see(const Candidate& c) {
-  const Eigen::Vector3d normal = plane_normal(c.kind, c.curve);
-  if (c.windows || c.group >= 0 || !(normal.norm() > 0)) return {c.windows};
-  const auto one_side = [&](const Eigen::Vector3d& of) {
-    return std::make_shared<const std::vector<Window>>(1, Window::one_side(of, c.curve.p[0]));
-  };
-  return {nullptr, one_side(normal), one_side(-normal)};
-}
-
 struct Seen {
   double nats = -INFINITY;
-  Windows windows;  // of the likeliest way
+  Windows windows;  // of the likeliest way to see it
 };
-// `moved`: the points of the candidate, or a copy of them.
+// A candidate of which nobody knows from where it is seen may be seen from anywhere or, as the
+// border of a face in its own plane, from one side of that; all three are as likely. `moved`: its
+// points, or a copy of them.
 Seen seen_at_best(const Candidate& c, const CurvePoints& moved, const ContrastJudge& judge) {
-  const int every = std::max(kHaste, int(moved.position.cols()) / kHastyPoints);
-  Seen best;
-  double sum = 0;
-  const std::vector<Windows> ways = ways_to_see(c);
-  for (const Windows& way : ways) {
-    const std::vector<Window> windows = way ? *way : std::vector<Window>();
-    double nats = judge.judge(moved, every, windows).nats;
-    if (nats > kPromise) nats = judge.judge(moved, 1, windows).nats;
-    sum += std::exp(nats) / double(ways.size());
-    if (nats > best.nats) best = {nats, way};
-  }
-  best.nats = std::log(sum);
-  return best;
+  const Eigen::Vector3d normal = plane_normal(c.kind, c.curve);
+  const bool any_side = !c.windows && c.group < 0 && normal.norm() > 0;
+  const Eigen::Vector3d point = moved.position.col(0);
+  const Window sides[] = {Window::one_side(normal, point), Window::one_side(-normal, point)};
+  const auto seen = [&](int every) {
+    const ContrastEvidence e = judge.judge(moved, every, windows_of(c));
+    Seen best{e.nats, c.windows};
+    double sum = std::exp(e.nats);
+    for (int k = 0; k < 2 && any_side; ++k) {
+      const double nats = judge.nats_through(e, sides[k], point);
+      sum += std::exp(nats);
+      if (nats > best.nats) best = {nats, std::make_shared<const std::vector<Window>>(1, sides[k])};
+    }
+    best.nats = std::log(any_side ? sum / 3 : sum);
+    return best;
+  };
+  const Seen hasty = seen(std::max(kHaste, int(moved.position.cols()) / kHastyPoints));
+  return hasty.nats > kPromise ? seen(1) : hasty;
 }
 
 Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge& judge) {
