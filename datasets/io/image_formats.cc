@@ -3,6 +3,7 @@
 // objects and 0.2 s of start-up, which a run over PNG images need not pay.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 
 #include <algorithm>
 #include <memory>
@@ -71,27 +72,18 @@ struct Signature {
 /// The format of a file by its first bytes; by its name where these tell nothing.
 std::string format_of(const char* path) {
   using namespace std::string_literals;
-  static const std::vector<Signature> kSignatures = {{0, "II*\0"s, "tiff"},
-                                                     {0, "MM\0*"s, "tiff"},
-                                                     {0, "II+\0"s, "tiff"},
-                                                     {0, "MM\0+"s, "tiff"},
-                                                     {0, "v/1\1"s, "openexr"},
-                                                     {0, "\xff\xd8\xff", "jpeg"},
-                                                     {0, "\x89PNG\r\n", "png"},
-                                                     {8, "WEBP", "webp"},
-                                                     {0, "BM", "bmp"},
-                                                     {0, "#?RADIANCE", "hdr"},
-                                                     {0, "#?RGBE", "hdr"},
-                                                     {0, "GIF8", "gif"},
-                                                     {4, "jP  \r\n\x87\n", "jpeg2000"},
-                                                     {4, "ftyphei", "heif"},
-                                                     {4, "ftypmif1", "heif"},
-                                                     {0, "8BPS", "psd"}};
+  static const std::vector<Signature> kSignatures = {
+      {0, "II*\0"s, "tiff"},     {0, "MM\0*"s, "tiff"},    {0, "II+\0"s, "tiff"},
+      {0, "MM\0+"s, "tiff"},     {0, "v/1\1"s, "openexr"}, {0, "\xff\xd8\xff", "jpeg"},
+      {0, "\x89PNG\r\n", "png"}, {8, "WEBP", "webp"},      {0, "BM", "bmp"},
+      {0, "#?RADIANCE", "hdr"},  {0, "#?RGBE", "hdr"},     {0, "GIF8", "gif"},
+      {0, "P5", "pnm"},          {0, "P6", "pnm"},         {4, "jP  \r\n\x87\n", "jpeg2000"},
+      {4, "ftyphei", "heif"},    {4, "ftypmif1", "heif"},  {0, "8BPS", "psd"}};
   char head[16] = {};
   OIIO::Filesystem::read_bytes(path, head, sizeof head);
   for (const Signature& s : kSignatures)
     if (s.bytes.compare(0, std::string::npos, head + s.at, s.bytes.size()) == 0) return s.format;
-  return OIIO::Filesystem::extension(path, false);
+  return OIIO::Strutil::lower(OIIO::Filesystem::extension(path, false));
 }
 
 constexpr size_t kMostHeader = 1 << 20;  // bytes of an OpenEXR file's headers that are looked at
@@ -114,9 +106,11 @@ std::unique_ptr<OIIO::ImageInput> open_image(const char* path, OIIO::ImageSpec* 
   }
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
+  std::unique_ptr<OIIO::ImageInput> input;
+  if (!format.empty()) input = OIIO::ImageInput::create(format);
   if (input && input->open(path, *spec, config)) return input;
-  *found = input ? input->geterror() : OIIO::geterror();
+  if (!input) OIIO::geterror();  // speaks of the format as of a file
+  *found = input ? input->geterror() : "neither first bytes nor a name of a known format";
   return nullptr;
 }
 

@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "datasets/types/errors.h"
@@ -65,8 +63,7 @@ TEST(Exr, AHeaderThatClaimsMoreThanTheFileHasIsRefusedBeforeMemoryIsTaken) {
   const TempFolder folder;
   const std::string path = folder.file("depth.exr");
   write_exr(path, {{"Z", ramp(8, 8, 0, 1)}}, false);
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string bytes = bytes_of(path);
   const std::string attribute("capDate\0string\0", 15);
   const size_t at = bytes.find(attribute);
   ASSERT_NE(at, std::string::npos);

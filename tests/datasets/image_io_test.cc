@@ -162,6 +162,13 @@ TEST(ReadPicture, PremultipliedFilesAreDividedByAlphaAndOthersAreNot) {
       << "a colour above alpha cannot be premultiplied";
 }
 
+// Uncompressed, 24 bits.
+std::string tga_of_one_pixel() {
+  std::string bytes(18, '\0');
+  bytes[2] = 2, bytes[12] = 1, bytes[14] = 1, bytes[16] = 24;
+  return bytes + "\x33\x66\x99";
+}
+
 // What a file is called says little, and a broken one is its own format's business alone.
 TEST(ReadPicture, FormatsAreToldByTheirFirstBytes) {
   const TempFolder folder;
@@ -171,6 +178,13 @@ TEST(ReadPicture, FormatsAreToldByTheirFirstBytes) {
     EXPECT_THAT(p.red.data, ElementsAre(FloatEq(0.2f))) << name;
     EXPECT_EQ(read_image_size(folder.file(name)).width, 1) << name;
   }
+  const std::string ppm = "P6\n1 1\n255\n\x33\x66\x99", tga = tga_of_one_pixel();
+  for (const char* name : {"a.ppm", "A.PPM", "a.img", "b"})
+    EXPECT_EQ(read_image_size(folder.write(name, ppm)).width, 1) << name;
+  for (const char* name : {"a.tga", "A.TGA"})  // has no such bytes
+    EXPECT_EQ(read_image_size(folder.write(name, tga)).width, 1) << name;
+  EXPECT_THAT(what_is_found(folder.write("c", tga)), HasSubstr("a known format"));
+  EXPECT_THAT(what_is_found(folder.write("c.img", tga)), HasSubstr("a known format"));
   EXPECT_THAT(what_is_found(folder.write("b.bmp", tiff.substr(0, 20))), HasSubstr("directory"));
   EXPECT_THROW(read_picture(folder.write("c.tif", "BM" + tiff)), InputError);
 }
