@@ -101,6 +101,11 @@ WidthRates with_share_of_same(WidthRates rates, double same) {
   return rates;
 }
 
+// Is a stroke near outlines?
+bool touches_outlines(const Sightings& seen) {
+  return std::any_of(seen.begin(), seen.end(), [](const RoundSighting& v) { return v.outline; });
+}
+
 // [nat] Dirichlet-multinomial distribution, but for what depends on the views alone.
 double log_likelihood(const WidthRates& rates, const std::array<int, 4>& views) {
   const auto rising = [](double a, double n) { return std::lgamma(a + n) - std::lgamma(a); };
@@ -167,6 +172,10 @@ RoundJudge::RoundJudge(const EdgeWorld& world, const Observation& wide, const Ro
   // Sharp edges lie still: a low quantile tells of them alone.
   if (!off.empty()) sigma_ = std::max<double>(sigma_, quantile(off, kLow) / kLowNormal);
   learn_widths(strokes);
+  outlines_.assign(strokes.size(), -INFINITY);
+  parallel_for(int(strokes.size()), 1, [&](int s) {
+    if (touches_outlines(strokes[s])) outlines_[s] = nats_of_outlines(s);
+  });
 }
 
 // Most of what a view shows is as wide as its blur makes it, outlines of rounds, too.
@@ -212,30 +221,28 @@ void RoundJudge::learn_rate(const std::vector<Sightings>& strokes) {
 }
 
 // Likelihood of a place that should be 0, over that of one anywhere in reach.
-double RoundJudge::near(double off_px) const {
-  const double r = off_px / sigma_, peak = 2 * reach_ / (sigma_ * kRoot2Pi);
-  return model_.accident + (1 - model_.accident) * peak * std::exp(-0.5 * r * r);
+double RoundJudge::Places::near(double off_px) const {
+  const double r = off_px / sigma_px, peak = 2 * reach_px / (sigma_px * kRoot2Pi);
+  return accident + (1 - accident) * peak * std::exp(-0.5 * r * r);
 }
 
 // Where the stroke is, or a little beside it, as all views together have it; or where a round shows
 // that is too small to be one.
-double RoundJudge::places_of_edge(const Sightings& seen) const {
-  const double slack = model_.slack_px;
+double RoundJudge::places_of_edge(const Sightings& seen, const Places& places) const {
+  const double slack = model_.slack_px, still = places.sigma_px;
   const auto nats_at = [&](const Vector2d& shift, double sigma) {
-    const double peak = (1 - model_.accident) * 2 * reach_ / (sigma * kRoot2Pi);
+    const Places at{sigma, places.reach_px, places.accident};
     double sum = -0.5 * shift.squaredNorm() / (slack * slack);
-    for (const RoundSighting& v : seen) {
-      const double r = (v.place_px - v.row.head<2>().dot(shift)) / sigma;
-      sum += std::log(model_.accident + peak * std::exp(-0.5 * r * r));
-    }
+    for (const RoundSighting& v : seen)
+      sum += std::log(at.near(v.place_px - v.row.head<2>().dot(shift)));
     return sum;
   };
   Vector2d shift = Vector2d::Zero();
   Eigen::Matrix2d H;  // times the variance
   for (int k = 0; k < kFits; ++k) {
     // Wide at first: the stroke may lie beside all of them.
-    const double sigma = k < kFits / 2 ? 3 * sigma_ : sigma_;
-    H = Eigen::Matrix2d::Identity() * std::pow(sigma_ / slack, 2);
+    const double sigma = k < kFits / 2 ? 3 * still : still;
+    H = Eigen::Matrix2d::Identity() * std::pow(still / slack, 2);
     Vector2d g = Vector2d::Zero();
     for (const RoundSighting& v : seen) {
       const Vector2d row = v.row.head<2>();
@@ -243,13 +250,13 @@ double RoundJudge::places_of_edge(const Sightings& seen) const {
       H += w * row * row.transpose(), g += w * row * v.place_px;
     }
     shift = H.ldlt().solve(g);
-    if (!shift.allFinite()) return nats_at(Vector2d::Zero(), sigma_);
+    if (!shift.allFinite()) return nats_at(Vector2d::Zero(), still);
   }
   // Of the places where it may be, those that agree with the views are a part (Laplace).
-  const double occam = 2 * std::log(slack / sigma_) + 0.5 * std::log(H.determinant());
-  const double tight = std::hypot(sigma_, kScatter * kTight * model_.least_radius_px);
+  const double occam = 2 * std::log(slack / still) + 0.5 * std::log(H.determinant());
+  const double tight = std::hypot(still, kScatter * kTight * model_.least_radius_px);
   std::vector<double> sums;
-  for (const double sigma : {sigma_, tight})
+  for (const double sigma : {still, tight})
     sums.push_back(std::max(nats_at(Vector2d::Zero(), sigma), nats_at(shift, sigma) - occam));
   return log_mean_exp(sums);
 }
@@ -269,24 +276,29 @@ double RoundJudge::places_of_band(const Sightings& seen) const {
 }
 
 double RoundJudge::places_of_rim(const Sightings& seen) const {
-  const double widest = std::log(kWidestRim), slack = kRoot2Pi * model_.slack_px;
   double best = -INFINITY;
-  const bool bright = world_.has_masks(), outlines = !world_.hull.empty();
   for (const double times : {1.0, 3.0, 9.0, -1.0, -3.0, -9.0}) {
-    if (bright && times < 0) break;  // the object is the brighter side of its outline
+    if (world_.has_masks() && times < 0) break;  // the object is the brighter side of its outline
     const RimFit rim = fit_rim(seen, times * model_.least_radius_px);
-    const double radius = rim.x.z() * (times > 0 ? 1 : -1);
-    if (!(radius >= model_.least_radius_px)) continue;
-    // Radii are as likely by their logarithm; the stroke is on the round, all around alike. Of all
-    // that, what agrees with the views is a part (Laplace), which is no larger than the round.
-    const Matrix3d precision = rim.precision + Matrix3d::Identity() / (radius * radius);
-    double sum = -std::log(widest * radius) - std::log(2 * M_PI * radius * slack) +
-                 3 * std::log(kRoot2Pi) - 0.5 * std::log(precision.determinant());
-    for (const RoundSighting& v : seen)
-      if (!outlines || v.outline) sum += std::log(near(v.place_px - v.row.dot(rim.x)));
-    best = std::max(best, sum);
+    if ((times > 0 ? 1 : -1) * rim.x.z() >= model_.least_radius_px)
+      best = std::max(best, nats_of_rim(seen, rim, places()));
   }
   return best;
+}
+
+// Radii are as likely by their logarithm; the stroke is on the round, all around alike. Of all
+// that, what agrees with the views is a part (Laplace), which is no larger than the round.
+double RoundJudge::nats_of_rim(const Sightings& seen, const RimFit& rim,
+                               const Places& places) const {
+  const double widest = std::log(kWidestRim), slack = kRoot2Pi * model_.slack_px;
+  const double radius = std::abs(rim.x.z());
+  const Matrix3d precision = rim.precision + Matrix3d::Identity() / (radius * radius);
+  double sum = -std::log(widest * radius) - std::log(2 * M_PI * radius * slack) +
+               3 * std::log(kRoot2Pi) - 0.5 * std::log(precision.determinant());
+  const bool outlines = !world_.hull.empty();
+  for (const RoundSighting& v : seen)
+    if (!outlines || v.outline) sum += std::log(places.near(v.place_px - v.row.dot(rim.x)));
+  return sum;
 }
 
 std::array<int, 4> RoundJudge::by_width(const Sightings& seen) const {
@@ -316,7 +328,8 @@ double RoundJudge::nats(int stroke, const EdgelFlags* others) const {
   if (seen.empty()) return 0;
   const double rounds = log_mean_exp({places_of_band(seen), places_of_rim(seen)});
   if (rounds == -INFINITY) return rounds;  // no round shows so near
-  return model_.witnesses * (rounds - places_of_edge(seen)) + widths_of_round(seen);
+  const double near = model_.witnesses * (rounds - places_of_edge(seen, places()));
+  return std::max(near, outlines_[stroke]) + widths_of_round(seen);
 }
 
 double odds_of_round(const std::vector<double>& nats) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "edges/views/unexplained.h"
@@ -75,7 +76,12 @@ class RoundJudge {
   double log_width(int view) const { return log_width_[view]; }
 
  private:
-  double places_of_edge(const std::vector<RoundSighting>& seen) const;
+  struct Places {
+    double sigma_px, reach_px, accident;  // [px], [px], share of the views
+    double near(double off_px) const;
+  };
+  Places places() const { return {sigma_, reach_, model_.accident}; }
+  double places_of_edge(const std::vector<RoundSighting>& seen, const Places& places) const;
   double places_of_band(const std::vector<RoundSighting>& seen) const;
   struct RimFit {
     Eigen::Vector3d x;          // [px] axis, relative to the stroke, and radius
@@ -83,10 +89,12 @@ class RoundJudge {
   };
   RimFit fit_rim(const std::vector<RoundSighting>& seen, double radius_px) const;
   double places_of_rim(const std::vector<RoundSighting>& seen) const;
+  double nats_of_rim(const std::vector<RoundSighting>& seen, const RimFit& rim,
+                     const Places& places) const;
+  std::vector<RimFit> rims_through(const std::vector<RoundSighting>& seen) const;
+  double nats_of_outlines(int stroke) const;
   std::array<int, 4> by_width(const std::vector<RoundSighting>& seen) const;
   double widths_of_round(const std::vector<RoundSighting>& seen) const;
-  double near(double off_px) const;
-
   const EdgeWorld& world_;
   const Observation& wide_;
   RoundModel model_;
@@ -96,12 +104,22 @@ class RoundJudge {
   double reach_, sigma_;
   std::vector<double> log_width_;  // per view
   double width_sigma_ = 0;         // 0: nothing tells how wide edges are
+  std::vector<double> outlines_;   // [nat] of a round, by all outlines near a stroke
 };
 
 /// Odds of a round rather than an edge before a stroke is looked at, from the likelihood ratios
 /// [nat] of all strokes of a scene: where all others are sharp, this one hardly is a round
 /// (empirical Bayes). The most probable ones, at most those without strokes: one half.
 double odds_of_round(const std::vector<double>& nats);
+
+/// Where outlines run beside a curve, up to `reach_px` away: for every view and piece of the curve
+/// that turns little, the median over its samples; widths stay 0. `curve`: one curve, two samples
+/// or more.
+struct Outlines {
+  std::vector<RoundSighting> seen;
+  int pieces = 1;  ///< of the curve
+};
+Outlines outlines_beside(const EdgeWorld& world, const CurvePoints& curve, double reach_px);
 
 /// What the views show along a stroke that show enough of it.
 std::vector<RoundSighting> round_sightings(const EdgeWorld& world, const Observation& wide,

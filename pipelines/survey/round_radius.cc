@@ -58,7 +58,7 @@ RoundJudge::Radius RoundJudge::radius(int stroke, const EdgelFlags* others) cons
     for (const RoundSighting& v : seen) {
       if (!v.outline) continue;
       const double off = v.place_px - v.row.dot(rim.x);
-      sum += std::log(near(off));
+      sum += std::log(places().near(off));
       if (std::abs(off) < 3 * sigma_) ++touching, squares += off * off;
     }
     if (touching <= 3 || sum <= most) continue;

@@ -30,6 +30,14 @@ Vector2d strongest(const Vector2d& camera, double radius, int view, bool contour
   return centre + radius * Vector2d(std::cos(angle), std::sin(angle));
 }
 
+// The brighter side of edgels is that of the cube.
+void turn_to_middle(const View& view, EdgelMap* map) {
+  double depth;
+  const Vector2d middle = view.project(kMiddle, &depth);
+  for (Edgel& e : map->edgels)
+    if ((middle.x() - e.x) * e.nx + (middle.y() - e.y) * e.ny < 0) e.nx *= -1, e.ny *= -1;
+}
+
 // A cube seen by many, one edge of which is rounded: where it is no outline it shows `inner` times
 // as wide as edges. All pictures are `blur` times as wide as usual. The stroke lies where it is
 // nearest to what all views show.
@@ -56,6 +64,7 @@ struct Scene {
       std::vector<Polyline> seen = polylines_of(sketch);
       seen[rounded] = segment({0.2, at.x(), at.y()}, {0.8, at.x(), at.y()});
       EdgelMap map = ideal_edgels(view, seen);
+      turn_to_middle(view, &map);
       for (Edgel& e : map.edgels) e.width = kSharp * blur;
       const size_t first = map.chain[rounded], end = map.chain[rounded + 1];
       for (size_t i = first; i < end; ++i) {
@@ -93,6 +102,80 @@ TEST(RoundJudge, ASightingIsTheMedianPlaceAndWidthOfItsEdgels) {
     largest = std::max(largest, std::abs(after[v].place_px));
   }
   EXPECT_GT(largest, 0.4);
+}
+
+// A cube one edge of which is cut off: two edges side by side, of which the stroke is one.
+struct CutEdge {
+  Sketch sketch;
+  EdgeWorld world;
+  explicit CutEdge(double width_px) {
+    const double cut = width_px * kPixel / std::sqrt(2.0);
+    const Vector2d a(0.8 - cut, 0.8), b(0.8, 0.8 - cut);
+    const auto edge = [](const Vector2d& at) {
+      return segment({0.2, at.x(), at.y()}, {0.8, at.x(), at.y()});
+    };
+    add_line(&sketch, edge(a)[0], edge(a)[1]);
+    std::vector<EdgelMap> maps;
+    const std::vector<View> views = ring_of_views(40, kMiddle, 3);
+    for (const View& view : views) {
+      // The outline runs along the one from which the line of sight passes the other by.
+      const Vector3d c = view.center_in_world();
+      const Vector2d camera(c.y(), c.z()), along = b - a, to = a - camera;
+      const bool faces = along.x() * to.y() - along.y() * to.x() < 0;
+      EdgelMap map = ideal_edgels(view, {edge(a), edge(b)});
+      turn_to_middle(view, &map);
+      for (Edgel& e : map.edgels) e.width = kSharp;
+      const bool outline = (c.y() > 0.8) != (c.z() > 0.8);
+      const size_t half = map.chain[1];
+      for (size_t i = 0; i < map.edgels.size(); ++i)
+        map.edgels[i].outline = outline && (i < half) == ((c.y() > 0.8) == faces);
+      maps.push_back(map);
+    }
+    world = make_edge_world(views, maps);
+  }
+};
+
+TEST(RoundJudge, OutlinesAreFoundBesideAStrokeAndStandOffAsTheRowSays) {
+  Scene s(0);
+  for (EdgelMap& map : s.world.maps)
+    for (Edgel& e : map.edgels) e.outline = true;
+  Sketch aside = s.sketch;
+  const Vector3d shift(0, 4 * kPixel, -3 * kPixel);
+  for (int n : {aside.strokes[s.rounded].begin, aside.strokes[s.rounded].end})
+    aside.nodes.col(n) += shift;
+  const Observation o = observe_rounds(aside, s.world, 0);
+  const int first = o.layout.first[s.rounded], n = o.layout.first[s.rounded + 1] - first;
+  const CurvePoints curve{
+      o.samples.position.middleCols(first, n), o.samples.tangent.middleCols(first, n), {0, n}};
+  const Vector3d u = curve.tangent.col(0).unitOrthogonal(), w = curve.tangent.col(0).cross(u);
+  const Vector2d moved = Vector2d(shift.dot(u), shift.dot(w)) / s.world.footprint;
+  const Outlines outlines = outlines_beside(s.world, curve, 12);
+  EXPECT_EQ(outlines.pieces, 1);
+  ASSERT_GT(outlines.seen.size(), 30u);
+  double farthest = 0;
+  size_t there = 0;  // in a few views another edge of the cube is nearer
+  for (const RoundSighting& v : outlines.seen) {
+    const double expected = -v.row.head<2>().dot(moved);
+    there += std::abs(v.place_px - expected) < 0.1 * std::abs(expected) + 0.1;
+    farthest = std::max(farthest, std::abs(v.place_px));
+  }
+  EXPECT_GE(there + 2, outlines.seen.size());
+  EXPECT_GT(farthest, 4);
+  EXPECT_LT(outlines_beside(s.world, curve, 2).seen.size(), outlines.seen.size());
+}
+
+TEST(RoundJudge, OutlinesFarBesideAStrokeTellARoundFromEdgesSideBySide) {
+  for (const double radius : {5, 7, 10}) {
+    Scene s(radius);  // the stroke lies where the round begins, as the views from one side have it
+    for (int n : {s.sketch.strokes[s.rounded].begin, s.sketch.strokes[s.rounded].end})
+      s.sketch.nodes.col(n).tail<2>() = Vector2d(0.8 - radius * kPixel, 0.8);
+    EXPECT_GT(s.nats(), 5) << radius;
+  }
+  for (const double width : {3, 5, 8}) {
+    const CutEdge s(width);
+    const Observation wide = observe_rounds(s.sketch, s.world, 0);
+    EXPECT_LT(RoundJudge(s.world, wide, {}).nats(0, nullptr), 0) << width;
+  }
 }
 
 TEST(RoundJudge, EdgelsOfOthersTellNothing) {
