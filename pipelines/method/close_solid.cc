@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "edges/views/unexplained.h"
+#include "pipelines/method/lacking_edges.h"
 #include "pipelines/survey/observe.h"
 #include "sketches/curve/curve.h"
 
@@ -25,6 +26,8 @@ constexpr double kWithoutMasks = 3;
 constexpr int kSightsPerStroke = 8;  // of one view
 constexpr int kMaskViews = 24, kMaskGrid = 32;
 constexpr int kClearPx = 3;  // [px] around a pixel that the mask must agree on
+// Share of the edges that images show and a solid lacks: of right ones none, of wrong ones a fifth.
+constexpr double kLacking = 0.01;
 constexpr int kContourLines = 600, kLeastChain = 12;
 
 void add_sights(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {
@@ -128,7 +131,20 @@ SolidEvidence solid_evidence(const Sketch& sketch, const EdgeWorld& world) {
   return evidence;
 }
 
-SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world,
+namespace {
+
+void refuse_if_edges_lack(const EdgeWorld& world, const Detector& detector, const LiftOptions& lift,
+                          SolidSearch* search) {
+  const LackingEdges lacking = lacking_edges(*search->solid, world, detector, lift);
+  if (lacking.share <= kLacking) return;
+  search->solid.reset();
+  search->why = "the images show edges that no face has, about " +
+                std::to_string(int(std::lround(100 * lacking.share))) + " % of all";
+}
+
+}  // namespace
+
+SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
                         const ReconstructOptions& options, RunReport* report, Progress* progress) {
   SolidSearch search;
   if (options.solid == "off") {
@@ -144,6 +160,7 @@ SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world,
     const SolidEvidence evidence = solid_evidence(sketch, world);
     if (evidence.rays.empty()) how.margin *= kWithoutMasks;
     search = find_solid(sketch, how, evidence);
+    if (search.solid) refuse_if_edges_lack(world, detector, options.lift, &search);
   } catch (const std::runtime_error& e) {
     search.why = e.what();
   }

@@ -80,7 +80,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   if (finished.sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   tell_stop(options, &report, progress);
-  SolidSearch solid = close_solid(finished.sketch, world, options, &report, progress);
+  SolidSearch solid = close_solid(finished.sketch, world, *detector, options, &report, progress);
   finished = complete_sketch(std::move(finished), &solid, world, options, &report, progress);
   rename_doubtful(leave_out_unsure(options.min_confidence, &finished), &solid);
   const Sketch proposed = propose_hidden(finished.sketch, world, &report);
