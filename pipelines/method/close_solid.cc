@@ -26,7 +26,7 @@ constexpr double kWithoutMasks = 3;
 constexpr int kSightsPerStroke = 8;  // of one view
 constexpr int kMaskViews = 24, kMaskGrid = 32;
 constexpr int kClearPx = 3;  // [px] around a pixel that the mask must agree on
-// Share of the edges that images show and a solid lacks: of right ones none, of wrong ones a fifth.
+// Share of the edges that a solid may lack: the rim of a small hole is more.
 constexpr double kLacking = 0.01;
 constexpr int kContourLines = 600, kLeastChain = 12;
 
