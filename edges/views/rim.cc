@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "datasets/types/parallel.h"
+#include "edges/views/normals_along.h"
 
 namespace sketchsplat {
 namespace {
@@ -29,13 +30,11 @@ struct Frames {
   std::vector<Vector3d> point, tangent, e1, e2;
   Frames(const CurvePoints& curve, int most) {
     const int n = int(curve.position.cols()), count = std::min(n, most);
-    Vector3d last = curve.tangent.col(0).unitOrthogonal();
+    const auto normals = normals_along(curve.tangent);
     for (int i = 0, k = 0; i < n && k < count; ++i) {
-      const Vector3d t = curve.tangent.col(i);
-      last = (last - t * t.dot(last)).normalized();
       if (i != int((k + 0.5) * n / count)) continue;
-      point.push_back(curve.position.col(i)), tangent.push_back(t);
-      e1.push_back(last), e2.push_back(t.cross(last));
+      point.push_back(curve.position.col(i)), tangent.push_back(curve.tangent.col(i));
+      e1.push_back(normals[i].col(0)), e2.push_back(normals[i].col(1));
       ++k;
     }
   }
@@ -96,8 +95,8 @@ std::optional<Sighting> sight(const EdgeWorld& world, int view, const Frames& f,
   for (int k = 0; k < f.size(); ++k)
     for (const int side : {1, -1}) {
       if (sides == Sides::kFirst && side < 0) continue;
-      const auto s = sight_sample(world, view, f, k, model, side, sides == Sides::kByBrightness,
-                                  options);
+      const auto s =
+          sight_sample(world, view, f, k, model, side, sides == Sides::kByBrightness, options);
       if (s) seen[side > 0].push_back(*s);
     }
   std::vector<Sighting>& more = seen[seen[1].size() >= seen[0].size()];
@@ -129,7 +128,8 @@ bool solve(const Sightings& sightings, bool fixed, Model* model) {
   for (const auto& s : sightings)
     if (s)
       squares +=
-          std::pow((s->row.dot(model->value) - s->place) / (kLeastSigmaPx * s->footprint), 2), ++n;
+          std::pow((s->row.dot(model->value) - s->place) / (kLeastSigmaPx * s->footprint), 2),
+          ++n;
   const int parameters = fixed ? 2 : 3;
   if (n > parameters) model->covariance *= std::max(1.0, squares / (n - parameters));
   return model->value.allFinite();
@@ -218,8 +218,8 @@ Rim fit_rim(const EdgeWorld& world, const CurvePoints& curve, const RimOptions& 
     return start;
   };
   Model fixed;
-  const Sightings as_edge = follow(world, frames, directions, begin(Sides::kAny), Sides::kAny, true,
-                                   options, &fixed);
+  const Sightings as_edge =
+      follow(world, frames, directions, begin(Sides::kAny), Sides::kAny, true, options, &fixed);
   const double edge_nats = nats_of(as_edge, fixed, options);
   rim.fixed_views = count(as_edge);
   rim.nats = -INFINITY;

@@ -45,7 +45,7 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // found in the edgels that are left. With siblings of the part, their family's strokes,
 // moved onto the edgels, come first, and the rest is for edgels that are left. Then the edges that
 // the strokes lead to expect, where the pictures show them. At last, the solid that the strokes
-// bound, if they tell one, and its edges that no picture shows.
+// bound, if they tell one that has all edges the pictures show, and its edges that none shows.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);

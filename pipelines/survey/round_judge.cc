@@ -9,6 +9,7 @@
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "edges/views/normals_along.h"
 #include "pipelines/survey/prior_odds.h"
 
 namespace sketchsplat {
@@ -33,19 +34,6 @@ constexpr double kWidestRim = 100;  // over the least radius
 constexpr double kSame = 2;         // standard deviations of what is as wide as most
 constexpr double kWide = 4;         // the same of what is a little wider
 constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
-
-// Two normals of the curve at all samples of a stroke, which turn no more than it does.
-std::vector<Eigen::Matrix<double, 3, 2>> normals_along(const Observation& o, int stroke) {
-  std::vector<Eigen::Matrix<double, 3, 2>> out;
-  Vector3d last = o.samples.tangent.col(o.layout.first[stroke]).unitOrthogonal();
-  for (int i = o.layout.first[stroke]; i < o.layout.first[stroke + 1]; ++i) {
-    const Vector3d t = o.samples.tangent.col(i);
-    last = (last - t * t.dot(last)).normalized();
-    out.emplace_back();
-    out.back() << last, t.cross(last);
-  }
-  return out;
-}
 
 // What the matches of a stroke in one view add up to.
 struct Gathered {
@@ -119,7 +107,7 @@ double log_likelihood(const WidthRates& rates, const std::array<int, 4>& views) 
 Sightings round_sightings(const EdgeWorld& world, const Observation& o, int stroke,
                           const EdgelFlags* others) {
   const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
-  const auto normals = normals_along(o, stroke);
+  const auto normals = normals_along(o.samples.tangent.middleCols(first, n));
   std::vector<Gathered> views(world.views.size());
   for (int i = first; i < first + n; ++i)
     for (int m = o.matches.first[i]; m < o.matches.first[i + 1]; ++m) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "datasets/types/median.h"
+#include "edges/views/normals_along.h"
 #include "pipelines/survey/round_judge.h"
 
 namespace sketchsplat {
@@ -46,14 +47,13 @@ struct Sample {
 
 std::vector<std::vector<Sample>> pieces_of(const CurvePoints& curve) {
   const int n = int(curve.position.cols());
+  const auto normals = normals_along(curve.tangent);
   std::vector<Sample> all;
-  Vector3d last = curve.tangent.col(0).unitOrthogonal();
   double turn = 0;
   for (int i = 0; i < n; ++i) {
     const Vector3d t = curve.tangent.col(i);
     if (i > 0) turn += std::acos(std::clamp(t.dot(curve.tangent.col(i - 1)), -1.0, 1.0));
-    last = (last - t * t.dot(last)).normalized();
-    all.push_back({curve.position.col(i), t, last, t.cross(last)});
+    all.push_back({curve.position.col(i), t, normals[i].col(0), normals[i].col(1)});
   }
   const int pieces = 1 + int(turn / kMostTurn);
   std::vector<std::vector<Sample>> out(pieces);
