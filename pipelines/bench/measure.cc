@@ -102,29 +102,27 @@ std::vector<std::string> method_flags(const BenchJob& job, const std::vector<Fie
   return flags_of(options, fields);
 }
 
-std::vector<Field> fields_of(const Verb& verb) { return verb.fields; }
-
 }  // namespace
 
 Measurer::Measurer(const Settings& settings)
     : settings_(settings),
       machine_(machine_labels()),
-      synthesize_fields_(fields_of(synthesize_verb())),
-      reconstruct_fields_(fields_of(reconstruct_verb())),
+      synthesize_(synthesize_verb()),
+      reconstruct_(reconstruct_verb()),
       renderer_(hash_of_file(synthesis_plugin_path())) {
   if (settings_.threads <= 0) settings_.threads = omp_get_max_threads();
 }
 
 std::string Measurer::scene_folder(const BenchJob& job) const {
   if (!job.folder.empty()) return job.folder;
-  std::string what = renderer_ + "\n" + joined(flags_of(job.synthesize, synthesize_fields_));
+  std::string what = renderer_ + "\n" + joined(flags_of(job.synthesize, synthesize_.fields));
   for (const auto& [name, text] : job.synthesize)
     if (name == "part" && fs::exists(text)) what += hash_of_file(text);
   return settings_.scenes + "/" + hash_of(what);
 }
 
 std::string Measurer::key(const BenchJob& job) const {
-  std::string what = joined(method_flags(job, reconstruct_fields_));
+  std::string what = joined(method_flags(job, reconstruct_.fields));
   for (const auto& [name, text] : machine_) what += name + " " + text + "\n";
   what += std::to_string(threads_of(job, settings_.threads)) + " " +
           std::to_string(settings_.repeats) + "\n";
@@ -139,7 +137,7 @@ bool Measurer::make_scene(const BenchJob& job, BenchRow* row) {
   for (const char* last : kLastFiles)
     if (fs::exists(folder + "/" + last)) return true;
   std::vector<std::string> arguments = {"synthesize", "--quiet", "--out", folder};
-  const std::vector<std::string> flags = flags_of(job.synthesize, synthesize_fields_);
+  const std::vector<std::string> flags = flags_of(job.synthesize, synthesize_.fields);
   arguments.insert(arguments.end(), flags.begin(), flags.end());
   const ChildResult child = run_self(arguments, settings_.log, settings_.timeout_seconds);
   if (child.status == 0) return true;
@@ -153,7 +151,7 @@ bool Measurer::make_scene(const BenchJob& job, BenchRow* row) {
 bool Measurer::reconstruct(const BenchJob& job, const std::string& result, BenchRow* row) {
   std::vector<std::string> arguments = {"reconstruct", scene_folder(job), "--quiet", "--out",
                                         result};
-  const std::vector<std::string> flags = method_flags(job, reconstruct_fields_);
+  const std::vector<std::string> flags = method_flags(job, reconstruct_.fields);
   const int threads = threads_of(job, settings_.threads);
   arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
   arguments.insert(arguments.end(), flags.begin(), flags.end());
@@ -231,7 +229,7 @@ BenchRow Measurer::measure(const BenchJob& job, const std::string& result) {
     if (name == "preset" || name == "detector" || name == "seed") row.set(name, text);
   row.set("options", [&] {
     std::string all;
-    for (const std::string& word : method_flags(job, reconstruct_fields_))
+    for (const std::string& word : method_flags(job, reconstruct_.fields))
       all += (all.empty() ? "" : " ") + word;
     return all;
   }());

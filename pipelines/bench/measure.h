@@ -7,6 +7,7 @@
 #include "pipelines/base/progress.h"
 #include "pipelines/bench/plan.h"
 #include "pipelines/bench/row.h"
+#include "pipelines/command/cli.h"
 
 namespace sketchsplat {
 
@@ -42,7 +43,7 @@ class Measurer {
 
   Settings settings_;
   OptionTexts machine_;
-  std::vector<Field> synthesize_fields_, reconstruct_fields_;
+  Verb synthesize_, reconstruct_;
   std::string renderer_;  ///< hash of the plug-in that makes scenes
   std::map<std::string, SceneFacts> facts_;
 };

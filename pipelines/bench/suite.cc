@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "datasets/synthetic/cad/parts.h"
 #include "datasets/types/errors.h"
@@ -250,24 +251,25 @@ Suite suite_of(const Place& place) {
   return suite;
 }
 
-// A verb's options, and those of all verbs; the storage behind them does not matter here.
+// A verb's options, and those of all verbs.
 class OptionCheck {
  public:
-  explicit OptionCheck(const Verb& verb) : name_(verb.name) {
+  explicit OptionCheck(Verb verb) : verb_(std::move(verb)) {
     list_fields(&common_, &fields_);
-    fields_.list.insert(fields_.list.end(), verb.fields.begin(), verb.fields.end());
+    fields_.list.insert(fields_.list.end(), verb_.fields.begin(), verb_.fields.end());
   }
   void check(const OptionTexts& options) const {
     for (const auto& [name, text] : options) {
       const bool nested = name.find('.') != std::string::npos;  // the verb itself reads NAME=VALUE
       const Field* field = find_field(fields_.list, name.substr(0, name.find('.')));
-      if (!field || field->positional) throw UsageError(unknown_option(fields_.list, name, name_));
+      if (!field || field->positional)
+        throw UsageError(unknown_option(fields_.list, name, verb_.name));
       if (!nested) assign(*field, text);
     }
   }
 
  private:
-  std::string name_;
+  Verb verb_;  // values are assigned to what it owns
   CommonOptions common_;
   Fields fields_;
 };
