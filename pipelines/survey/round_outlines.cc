@@ -166,11 +166,12 @@ std::optional<Vector2d> likeliest_other(const Sightings& seen, const Sightings& 
 // [nat] An edge with another one along it, at some place of its own: over places anywhere.
 double places_of_two(const Sightings& seen, double sigma, double reach) {
   constexpr double kRoot2Pi = 2.5066283, kWeak = 1e-3;
+  constexpr double kOff = 1.5;  // standard deviations: other edges may lie near
   constexpr int kFits = 3;
   const double peak = 2 * reach / (sigma * kRoot2Pi);
   Sightings far;
   for (const RoundSighting& v : seen)
-    if (std::abs(v.place_px) > 3 * sigma) far.push_back(v);
+    if (std::abs(v.place_px) > kOff * sigma) far.push_back(v);
   std::optional<Vector2d> other = likeliest_other(seen, far, sigma, reach, peak);
   if (!other) return -INFINITY;
   Matrix2d H;
