@@ -26,6 +26,7 @@ constexpr int kPose = CameraUnknowns::kPose, kShared = CameraUnknowns::kMostShar
 
 constexpr double kLeastSigma = 0.05;  // [px] of an edgel, and of a stroke in a view
 constexpr double kBiweight = 4.685;   // standard deviations: 95 % efficient
+constexpr double kLikeOthers = 6;     // views of a stroke that tell as much of it as all strokes do
 
 // One edgel that a stroke was matched with.
 struct Row {
@@ -45,9 +46,9 @@ struct Linear {
 class System {
  public:
   System(const Sketch& sketch, const Observation& o, const EdgeWorld& world,
-         const StatedCameras& stated, const CameraPrior& prior);
+         const StatedCameras& stated, const CameraPrior& prior, const CameraFitOptions& options);
 
-  void solve(int steps);
+  void solve();
   CameraFit result(const Sketch& joined);
   CameraEvidence evidence();
 
@@ -59,6 +60,7 @@ class System {
 
   void list_rows(const Observation& o, const EdgeWorld& world);
   void weigh();
+  std::vector<double> sigma_of_strokes(const std::vector<double>& offsets) const;
   void place(const State& state);
   double distance(const Row& row, Linear* linear, const PointJacobian* moves = nullptr) const;
   double cost() const;
@@ -70,6 +72,7 @@ class System {
   double scale_sigma() const;
   std::vector<double> distances() const;
 
+  const CameraFitOptions options_;
   const SampleLayout& layout_;
   std::vector<StrokeKind> kinds_;
   Vector3d middle_;
@@ -89,8 +92,10 @@ class System {
 };
 
 System::System(const Sketch& sketch, const Observation& o, const EdgeWorld& world,
-               const StatedCameras& stated, const CameraPrior& prior)
-    : layout_(o.layout),
+               const StatedCameras& stated, const CameraPrior& prior,
+               const CameraFitOptions& options)
+    : options_(options),
+      layout_(o.layout),
       middle_(o.samples.position.rowwise().mean()),
       radius_(image_radii(o, world, middle_)),
       cameras_(stated.views, middle_, radius_, prior),
@@ -147,11 +152,30 @@ void System::weigh() {
   scatter_ = std::max(kLeastSigma, normal_sigma(within));
   for (int k = 0; k < offsets_; ++k) common.push_back(std::abs(sum[k] / weight[k]));
   offset_sigma_ = std::max(kLeastSigma, normal_sigma(common));
+  const std::vector<double> sigma = sigma_of_strokes(common);
   for (Row& row : rows_) {
-    const double r = sum[row.offset] / weight[row.offset] / (kBiweight * offset_sigma_);
+    const double still = sigma[row.stroke];
+    const double r = common[row.offset] / (kBiweight * still);
     row.weight *= r * r < 1 ? std::pow(1 - r * r, 2) : 0;
-    row.weight /= scatter_ * scatter_ + count[row.offset] * offset_sigma_ * offset_sigma_;
+    row.weight /= scatter_ * scatter_ + count[row.offset] * still * still;
   }
+}
+
+// Standard deviation [px] of each stroke's offsets in views. What is round wanders from view to
+// view where sharp edges, by the same cameras, lie still.
+std::vector<double> System::sigma_of_strokes(const std::vector<double>& offsets) const {
+  std::vector<std::vector<double>> own(kinds_.size());
+  std::vector<char> known(offsets.size());
+  for (const Row& row : rows_)
+    if (!std::exchange(known[row.offset], 1)) own[row.stroke].push_back(offsets[row.offset]);
+  const double all = kLikeOthers * offset_sigma_ * offset_sigma_;
+  std::vector<double> sigma;
+  for (std::vector<double>& of_stroke : own) {
+    const double n = double(of_stroke.size());
+    const double square = n > 0 ? std::pow(normal_sigma(std::move(of_stroke)), 2) : 0;
+    sigma.push_back(std::max(kLeastSigma, std::sqrt((all + n * square) / (kLikeOthers + n))));
+  }
+  return sigma;
 }
 
 void System::place(const State& state) {
@@ -220,7 +244,7 @@ void System::assemble(const std::vector<Linear>& rows, double damping, int half)
     normal.gradient.setZero();
     normal.cross = MatrixXd::Zero(kStrokeUnknowns, size);
     normal.root.setZero();
-    if (half >= 0 && s % 2 != half) return;
+    if (!options_.strokes_move || (half >= 0 && s % 2 != half)) return;
     for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
       const Linear& r = rows[i];
       const int camera = cameras_.camera_of(rows_[i].view), shared = cameras_.num_shared(camera);
@@ -305,12 +329,12 @@ double System::scale_sigma() const {
   return variance > 0 ? std::sqrt(variance) : 0;
 }
 
-void System::solve(int steps) {
+void System::solve() {
   constexpr double kEnough = 1e-6;  // of the cost
   constexpr int kTrials = 6;
   std::vector<Linear> rows;
   double damping = 1e-6, least = cost();
-  for (int round = 0; round < steps; ++round) {
+  for (int round = 0; round < options_.steps; ++round) {
     linearise(&rows);
     const State before = now_;
     const double last = least;
@@ -377,16 +401,17 @@ CameraFit System::result(const Sketch& joined) {
 }  // namespace
 
 CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
-                      const StatedCameras& stated, const CameraPrior& prior, int steps) {
-  System system(sketch, observation, world, stated, prior);
-  system.solve(steps);
+                      const StatedCameras& stated, const CameraPrior& prior,
+                      const CameraFitOptions& options) {
+  System system(sketch, observation, world, stated, prior, options);
+  system.solve();
   return system.result(sketch);
 }
 
 CameraEvidence camera_evidence(const Sketch& sketch, const Observation& observation,
                                const EdgeWorld& world, const StatedCameras& stated,
                                const CameraPrior& prior) {
-  return System(sketch, observation, world, stated, prior).evidence();
+  return System(sketch, observation, world, stated, prior, {}).evidence();
 }
 
 }  // namespace sketchsplat

@@ -16,6 +16,12 @@ struct StatedCameras {
   std::vector<ScenePoint> points = {};
 };
 
+/// How cameras and strokes are fitted.
+struct CameraFitOptions {
+  int steps = 3;                 ///< at most
+  bool strokes_move = true;      ///< false: strokes stay where they are (resection)
+};
+
 /// Cameras and strokes that agree best with matched edgels, and how well.
 struct CameraFit {
   std::vector<View> views;
@@ -38,7 +44,8 @@ struct CameraFit {
 /// it counts, and by its points; world.views, which the observation was made with, are where the
 /// search begins.
 CameraFit fit_cameras(const Sketch& sketch, const Observation& observation, const EdgeWorld& world,
-                      const StatedCameras& stated, const CameraPrior& prior, int steps);
+                      const StatedCameras& stated, const CameraPrior& prior,
+                      const CameraFitOptions& options);
 
 /// Whether cameras err, from what strokes tell that other strokes confirm.
 struct CameraEvidence {

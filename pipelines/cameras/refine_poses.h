@@ -18,12 +18,10 @@ struct PosedStrokes {
 
 /// Lifts the edgels and fits strokes; where the strokes' offsets in single views, or a focal length
 /// or lens that fits them better, say that the cameras err (--refine-poses auto; always with "on",
-/// never with "off"), moves cameras and strokes together (camera_fit.h) and does it again with
-/// these cameras until they stay. Focal length, centre and lens move only if poses alone do not do
-/// it. Where strokes explain little even then, pictures of a quarter and a half of the size are
-/// tried. Views whose edgels do not fit the strokes of the others are left out with a warning.
-/// Without any of this nothing changes. Throws TooLittleError if views agree on no more than they
-/// would by accident.
+/// never with "off"), settles cameras and strokes together (settle.h) and keeps these cameras if as
+/// many edgels lie on strokes. Views whose edgels do not fit the strokes of the others are left out
+/// with a warning. Without any of this nothing changes. Throws TooLittleError if views agree on no
+/// more than they would by accident.
 /// Points of structure from motion, if the scene has any, hold the cameras where they fit them.
 PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const ReconstructOptions& options,
                           RunReport* report, Progress* progress);

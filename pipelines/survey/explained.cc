@@ -9,12 +9,12 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kReachPx = 2, kSpacingPx = 6;
+constexpr double kSpacingPx = 6;
 constexpr double kUnfit = 0.3;  // times what strokes explain of the usual view
 
-Observation look(const Sketch& sketch, const EdgeWorld& world) {
+Observation look(const Sketch& sketch, const EdgeWorld& world, double reach_px) {
   MatchOptions match;
-  match.reach_px = kReachPx;
+  match.reach_px = reach_px;
   match.quadratics = false;
   return observe(sketch, world, match, kSpacingPx);
 }
@@ -36,11 +36,11 @@ std::vector<double> edgels_on_strokes(const EdgeWorld& world, const Observation&
 
 }  // namespace
 
-Explained explained(const Sketch& sketch, const EdgeWorld& world) {
+Explained explained(const Sketch& sketch, const EdgeWorld& world, double reach_px) {
   const int n = int(world.views.size());
   Explained out{std::vector<double>(n), std::vector<double>(n)};
   if (sketch.size() == 0) return out;
-  const Observation o = look(sketch, world);
+  const Observation o = look(sketch, world, reach_px);
   const std::vector<double> on = edgels_on_strokes(world, o);
   std::vector<double> rows(n);
   for (const SampleMatch& m : o.matches.matches) ++rows[m.view];

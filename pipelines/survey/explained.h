@@ -15,9 +15,9 @@ struct Explained {
   double share = 0;             ///< of all edgels
 };
 
-/// Edgels within 2 px of a stroke's image, along it, are explained; once, even if several strokes
-/// lie there, as they do where cameras err. Zero throughout for a sketch without strokes.
-Explained explained(const Sketch& sketch, const EdgeWorld& world);
+/// Edgels within `reach_px` of a stroke's image, along it, are explained; once, even if several
+/// strokes lie there, as they do where cameras err. Zero throughout for a sketch without strokes.
+Explained explained(const Sketch& sketch, const EdgeWorld& world, double reach_px = 2);
 
 /// Views of which strokes explain far less than of the usual one, in both ways: 1, else 0.
 std::vector<char> unfit_views(const Explained& shares);

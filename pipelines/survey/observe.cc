@@ -54,6 +54,21 @@ Measured measure(const Observation& o, int stroke, double footprint) {
   return out;
 }
 
+Observation without_strokes(Observation o, const std::vector<char>& leave) {
+  Matches kept;
+  kept.sigma_px = o.matches.sigma_px;
+  kept.first.push_back(0);
+  for (int i = 0; i < o.layout.size(); ++i) {
+    const auto all = o.matches.matches.begin();
+    if (!leave[o.layout.stroke[i]])
+      kept.matches.insert(kept.matches.end(), all + o.matches.first[i],
+                          all + o.matches.first[i + 1]);
+    kept.first.push_back(int(kept.matches.size()));
+  }
+  o.matches = std::move(kept);
+  return o;
+}
+
 StrokeStats summarise(const EdgeWorld& world, const Observation& o, int stroke, int min_views,
                       const std::vector<std::vector<char>>* ignored) {
   StrokeStats s;

@@ -38,6 +38,8 @@ struct StrokeObservation : Observation {
 /// Samples every `spacing_px` footprints.
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
                     double spacing_px);
+/// Without the matches of strokes that are marked (one per stroke), and without quadratics.
+Observation without_strokes(Observation observation, const std::vector<char>& leave);
 /// `min_views` views make a sample covered.
 StrokeObservation with_strokes(Observation observation, const EdgeWorld& world, int min_views);
 

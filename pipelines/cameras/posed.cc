@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines/cameras/posed.h"
+
+#include <utility>
+
+#include "datasets/types/errors.h"
+#include "pipelines/stages/stages.h"
+#include "pipelines/survey/round_judge.h"
+#include "pipelines/survey/select.h"
+
+namespace sketchsplat {
+namespace {
+
+constexpr double kSpacingPx = 6;
+
+std::vector<char> rounds_among(const Sketch& sketch, const EdgeWorld& world,
+                               const RoundModel& model) {
+  const Observation wide = observe_rounds(sketch, world, 0);
+  const RoundJudge judge(world, wide, model);
+  std::vector<char> out;
+  for (int s = 0; s < sketch.size(); ++s) out.push_back(judge.nats(s, nullptr) > 0);
+  return out;
+}
+
+}  // namespace
+
+void find_strokes(const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  posed->report = {};
+  posed->round.clear();
+  try {
+    posed->sketch = fit_strokes(lift_scene(posed->world, options, &posed->report, progress),
+                                posed->world, options, &posed->report, progress);
+    posed->round = rounds_among(posed->sketch, posed->world, select_options(options).round);
+  } catch (const TooLittleError&) {
+    posed->sketch = {};
+  }
+}
+
+Observation look(const Posed& posed, double reach_px) {
+  MatchOptions match;
+  match.reach_px = reach_px;
+  match.quadratics = false;
+  return without_strokes(observe(posed.sketch, posed.world, match, kSpacingPx), posed.round);
+}
+
+bool stands_among_things(const EdgeWorld& world) { return bool(world.object.table); }
+
+EdgeWorld refreshed(EdgeWorld world) {
+  if (world.silhouettes) world.hull = hull_of(world);
+  if (!world.has_masks()) return world;
+  const ObjectRegion object = world.object;
+  EdgeWorld out = make_edge_world(std::move(world.views), std::move(world.maps));
+  out.object = object;
+  if (!object.box.isEmpty()) out.bounds = object.box;
+  return out;
+}
+
+}  // namespace sketchsplat
