@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # rules_test.sh SOURCE BUILD [RULE]: what holds of every file of the repository. Rules: licences,
-# packages, cgal, style_sheet, words, columns, folders, loops.
+# packages, cgal, style_sheet, words, columns, folders, loops, names.
 set -uo pipefail
 build=$(readlink -f "$2")
 cd "$1"
@@ -103,6 +103,14 @@ loops() {  # an exception that leaves a parallel region of OpenMP ends the progr
       xargs grep -n '#pragma omp parallel')
 }
 
-for rule in ${3:-licences packages cgal style_sheet words columns folders loops}; do $rule; done
+names() {  # a linker takes either of two types of one name for both (one-definition rule)
+  local name
+  while read -r name; do fail "$name is defined in two headers"; done < <(
+    sources -name '*.h' | xargs awk '
+      /^namespace .*\{/ { space = $2 }
+      /^(struct|class) [A-Z]/ && !/;$/ { print space "::" $2 }' | sort | uniq -d)
+}
+
+for rule in ${3:-licences packages cgal style_sheet words columns folders loops names}; do $rule; done
 [ $failed = 0 ] && echo passed
 exit $failed

@@ -35,7 +35,7 @@ TEST(EdgeMapScore, NothingAgainstNothingIsPerfectAndAgainstSomethingWorthless) {
 }
 
 TEST(EdgePolylines, AreReadAndRefusedInOneLine) {
-  const TempFolder folder;
+  const TestFolder folder;
   std::ofstream(folder.path("a.json")) << R"({"polylines": [[[1, 2], [3, 4.5]]]})";
   const auto lines = read_edge_polylines(folder.path("a.json"));
   ASSERT_EQ(lines.size(), 1u);

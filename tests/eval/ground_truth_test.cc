@@ -44,7 +44,7 @@ surfaces:
 const char* kStats = R"({"00000001": {"bbox": [0, 0, -1, 10, 5, 1, 10, 5, 2]}})";
 
 TEST(FindGroundTruth, ReadsAbcFeaturesWithTheirObj) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("scene/gt/00000001_a_features_000.yml", kFeatures);
   folder.write("scene/gt/00000001_a_trimesh_000.obj",
                "# mesh\nv 0 0 0\nv 10 0 0\nv 4 0 0\nv 0 5 0\nv 7.5 4.3301270189 0\n"
@@ -67,7 +67,7 @@ TEST(FindGroundTruth, ReadsAbcFeaturesWithTheirObj) {
 }
 
 TEST(FindGroundTruth, SamplesSharpCurvesInTheUnitsOfTheFile) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("gt/00000001_features.yml", kFeatures);
   folder.write("gt/chunk_0000_stats.json", kStats);
   const GroundTruth truth = find_ground_truth(folder.path());
@@ -81,7 +81,7 @@ TEST(FindGroundTruth, SamplesSharpCurvesInTheUnitsOfTheFile) {
 }
 
 TEST(FindGroundTruth, RebuildsLinesAndCirclesWithoutAnObj) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("gt/00000001_features.yml", kFeatures);
   folder.write("chunk_0000_stats.json", kStats);
   const GroundTruth truth = find_ground_truth(folder.path());
@@ -95,7 +95,7 @@ TEST(FindGroundTruth, RebuildsLinesAndCirclesWithoutAnObj) {
 }
 
 TEST(FindGroundTruth, TakesPublishedSamplesAsTheyAre) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("gt/00000001_features.yml", kFeatures);
   folder.write("chunk_0000_stats.json", kStats);
   folder.write("gt/00000001_0.005.ply",
@@ -109,7 +109,7 @@ TEST(FindGroundTruth, TakesPublishedSamplesAsTheyAre) {
 }
 
 TEST(FindGroundTruth, FindsTheSceneInATruthFolderOfTheWholeDataSet) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("groundtruth/feat/00000001_features.yml", kFeatures);
   folder.write("groundtruth/feat/00000002_features.yml", kFeatures);
   folder.write("groundtruth/chunk_0000_stats.json", kStats);
@@ -121,7 +121,7 @@ TEST(FindGroundTruth, FindsTheSceneInATruthFolderOfTheWholeDataSet) {
 }
 
 TEST(FindGroundTruth, UndoesWorldToGt) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("groundtruth/gt.json", R"([{"type": "line", "points": [[0,0,0],[1,0,0]]}])");
   // gt = 2 world + (1, 0, 0)
   folder.write("meta_data.json", R"({"worldtogt": [[2,0,0,1],[0,2,0,0],[0,0,2,0],[0,0,0,1]]})");
@@ -132,7 +132,7 @@ TEST(FindGroundTruth, UndoesWorldToGt) {
 }
 
 TEST(FindGroundTruth, ReadsListsOfCurvesAndClosesThem) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("groundtruth/gt.json",
                R"([{"type": "Circle", "points": [[0,0,0],[8,0,0],[8,8,0]], "closed": true},
                    {"type": "line", "points": [[0,0,0],[1,0,0]], "closed": false}])");
@@ -147,7 +147,7 @@ TEST(FindGroundTruth, ReadsListsOfCurvesAndClosesThem) {
 }
 
 TEST(FindGroundTruth, ReadsCurvesInMillimetres) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("derived_gt_edges.json",
                R"({"scale": 0.1, "offset": [0, 0.5, 0],
                    "curves": [{"type": "Line", "points_mm": [[0,0,0],[9.9,0,0]]}]})");
@@ -158,7 +158,7 @@ TEST(FindGroundTruth, ReadsCurvesInMillimetres) {
 }
 
 TEST(FindGroundTruth, KnowsAnObjectThatFillsTheUnitCubeByItsEdges) {
-  const TempFolder folder;
+  const TestFolder folder;
   const auto extent = [&](const std::string& from, const std::string& to) {
     return find_ground_truth(folder.write("gt.json", R"([{"type": "line", "points": [)" + from +
                                                          "," + to + "]}]"))
@@ -177,7 +177,7 @@ TEST(FindGroundTruth, ReadsASketch) {
   sketch.add_stroke(StrokeKind::kCircle, -1, -1, {{1, 1, 1}, {0, 0, 0.5}});
   std::ostringstream text;
   write_sketch_json(text, sketch);
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("groundtruth/sketch.json", text.str());
   const GroundTruth truth = find_ground_truth(folder.path());
   EXPECT_EQ(truth.format, "sketch");
@@ -189,7 +189,7 @@ TEST(FindGroundTruth, ReadsASketch) {
 }
 
 TEST(FindGroundTruth, TellsWhatIsWrong) {
-  const TempFolder folder;
+  const TestFolder folder;
   EXPECT_THROW(find_ground_truth(folder.path("nothing")), InputError);
   EXPECT_THROW(find_ground_truth(folder.path()), InputError) << "an empty folder";
   const auto broken = [&](const std::string& name, const std::string& text) {
@@ -210,7 +210,7 @@ TEST(FindGroundTruth, TellsWhatIsWrong) {
 }
 
 TEST(FindGroundTruth, TellsWhatIsWrongWithAbcFiles) {
-  const TempFolder folder;
+  const TestFolder folder;
   const std::string yml = folder.write("00000001_features.yml", kFeatures);
   EXPECT_THROW(find_ground_truth(yml), InputError) << "neither statistics nor OBJ";
   folder.write("chunk_0000_stats.json", R"({"00000002": {}})");

@@ -17,7 +17,7 @@ const char* kPly =
     "property float z\nproperty int stroke_index\nend_header\n0 0 0 4\n1 0 0 2\n0 0 1 4\n";
 
 TEST(ReadPrediction, ReadsParametricEdges) {
-  const TempFolder folder;
+  const TestFolder folder;
   const Prediction p =
       read_prediction(folder.write("parametric_edges.json",
                                    R"({"curves_ctl_pts": [[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]],
@@ -31,7 +31,7 @@ TEST(ReadPrediction, ReadsParametricEdges) {
 }
 
 TEST(ReadPrediction, TakesPrimitivesOfAFolderAndStrokesOfItsPoints) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("parametric_edges.json",
                R"({"curves_ctl_pts": [], "lines_end_pts": [[1,2,3,4,5,6]]})");
   folder.write("edge_points.ply", kPly);
@@ -44,7 +44,7 @@ TEST(ReadPrediction, TakesPrimitivesOfAFolderAndStrokesOfItsPoints) {
 }
 
 TEST(ReadPrediction, TakesPointsAsTheyAre) {
-  const TempFolder folder;
+  const TestFolder folder;
   const Prediction p = read_prediction(folder.write("gaussians_all.ply", kPly));
   EXPECT_TRUE(p.points_only);
   ASSERT_EQ(p.points.cols(), 3);
@@ -54,7 +54,7 @@ TEST(ReadPrediction, TakesPointsAsTheyAre) {
 }
 
 TEST(ReadPrediction, ReadsBinaryPoints) {
-  const TempFolder folder;
+  const TestFolder folder;
   std::string ply =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar red\n"
       "property double x\nproperty float y\nproperty double z\nend_header\n";
@@ -72,7 +72,7 @@ TEST(ReadPrediction, ReadsBinaryPoints) {
 }
 
 TEST(ReadPrediction, ReadsObjPolylinesAndTheirObjects) {
-  const TempFolder folder;
+  const TestFolder folder;
   const std::string v = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 1 1 1\n";
   const Prediction grouped =
       read_prediction(folder.write("a.obj", v + "o first\nl 1 2\nl 2 3\no second\nl 3 4\n"));
@@ -96,7 +96,7 @@ TEST(ReadPrediction, ReadsASketch) {
   sketch.add_stroke(StrokeKind::kCircle, -1, -1, {{0.5, 0.5, 0.5}, {0, 0, 0.25}});
   std::ostringstream text;
   write_sketch_json(text, sketch);
-  const TempFolder folder;
+  const TestFolder folder;
   const Prediction p = read_prediction(folder.write("sketch.json", text.str()));
   EXPECT_EQ(p.lines.size(), 1u);
   EXPECT_GE(p.curves.size(), 4u);
@@ -111,7 +111,7 @@ TEST(ReadPrediction, TakesASmoothChainOfCubicsForOneCurve) {
   sketch.add_stroke(StrokeKind::kBezier, b, c, {{2.5, -0.5, 0}, {3, 0, 1}});
   std::ostringstream text;
   write_sketch_json(text, sketch);
-  const TempFolder folder;
+  const TestFolder folder;
   const Prediction p = read_prediction(folder.write("sketch.json", text.str()));
   EXPECT_EQ(p.curves.size(), 2u);
   ASSERT_EQ(p.strokes.size(), 1u);
@@ -120,7 +120,7 @@ TEST(ReadPrediction, TakesASmoothChainOfCubicsForOneCurve) {
 }
 
 TEST(ReadPrediction, TellsWhatIsWrong) {
-  const TempFolder folder;
+  const TestFolder folder;
   const auto broken = [&](const std::string& text) {
     EXPECT_THROW(read_prediction(folder.write("a.json", text)), InputError) << text;
   };
@@ -138,7 +138,7 @@ TEST(ReadPrediction, TellsWhatIsWrong) {
 }
 
 TEST(ReadPrediction, AcceptsAnEmptyOne) {
-  const TempFolder folder;
+  const TestFolder folder;
   const Prediction p = read_prediction(
       folder.write("parametric_edges.json", R"({"curves_ctl_pts": [], "lines_end_pts": []})"));
   EXPECT_TRUE(p.lines.empty());

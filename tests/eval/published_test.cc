@@ -72,7 +72,7 @@ void expect_equal(const json& ours, const json& theirs) {
 
 // Lays the truth out as the independent evaluator wants it. Curves without ABC files are written
 // as such, with a box that gives their scale and offset.
-void make_root(const TempFolder& folder, const std::string& id) {
+void make_root(const TestFolder& folder, const std::string& id) {
   const fs::path root = folder.path("root");
   for (const char* name : {"feat", "obj", "sampled_pts"}) fs::create_directories(root / name);
   const fs::path derived = kScenes / id / "derived_gt_edges.json";
@@ -124,7 +124,7 @@ class Published : public testing::TestWithParam<std::pair<const char*, const cha
 };
 
 TEST_P(Published, NumbersAreThoseOfTheIndependentEvaluator) {
-  const TempFolder folder;
+  const TestFolder folder;
   const std::string file = folder.write("p.json", noisy_prediction(truth_).dump());
   const json ours = evaluate_as(file, truth_, Protocol::kSketchSplat);
   const json theirs = json::parse(GetParam().second);
@@ -141,7 +141,7 @@ TEST_P(Published, AgreeWithTheEvaluatorItself) {
   if (!fs::exists(tool) || std::system((python + " -c 'import numpy, scipy, yaml' 2>&1").c_str())) {
     GTEST_SKIP() << "The independent evaluator or Python's numpy, scipy or yaml is not here.";
   }
-  const TempFolder folder;
+  const TestFolder folder;
   make_root(folder, id_);
   const std::string file = folder.write("p.json", noisy_prediction(truth_).dump());
   for (const bool voxel : {false, true}) {

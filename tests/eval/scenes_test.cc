@@ -17,7 +17,7 @@ const char* const kTruth = R"([{"type": "Line", "points": [[0,0,0],[0.5,0,0],[1,
                                 "visible_views": [3, 2, 0]}])";
 const char* const kLine = R"({"lines_end_pts": [[0,0,0,1,0,0]], "curves_ctl_pts": []})";
 
-std::vector<SceneEvaluation> all(const TempFolder& folder) {
+std::vector<SceneEvaluation> all(const TestFolder& folder) {
   std::vector<SceneEvaluation> results;
   for (const ScenePair& scene : find_scenes(folder.path("results"), folder.path("scenes"))) {
     results.push_back(evaluate_scene(scene, {}));
@@ -26,7 +26,7 @@ std::vector<SceneEvaluation> all(const TempFolder& folder) {
 }
 
 TEST(Scenes, MissingResultsCountAsZeroInTheMean) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("scenes/a/groundtruth/gt.json", kTruth);
   folder.write("scenes/b/groundtruth/gt.json", kTruth);
   folder.write("scenes/no_truth/readme", "");
@@ -49,7 +49,7 @@ TEST(Scenes, MissingResultsCountAsZeroInTheMean) {
 }
 
 TEST(Scenes, ResultsMayBeFilesOfAnybody) {
-  const TempFolder folder;
+  const TestFolder folder;
   for (const char* name : {"a", "b", "c"}) {
     folder.write(std::string("scenes/") + name + "/groundtruth/gt.json", kTruth);
   }
@@ -67,7 +67,7 @@ TEST(Scenes, ResultsMayBeFilesOfAnybody) {
 }
 
 TEST(Scenes, OfNothingAreRefused) {
-  const TempFolder folder;
+  const TestFolder folder;
   folder.write("empty/readme", "");
   folder.write("scenes/a/groundtruth/gt.json", kTruth);
   EXPECT_THROW(find_scenes(folder.path("empty"), folder.path("empty")), InputError);
@@ -78,7 +78,7 @@ TEST(Scenes, OfNothingAreRefused) {
 }
 
 TEST(Scenes, VisibilityMustTellOfEveryPoint) {
-  const TempFolder folder;
+  const TestFolder folder;
   const std::string truth = folder.write(
       "gt.json", R"([{"type": "Line", "points": [[0,0,0],[1,0,0]], "visible_views": [3]}])");
   EXPECT_THROW(find_ground_truth(truth), InputError);

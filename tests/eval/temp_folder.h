@@ -10,16 +10,16 @@
 namespace sketchsplat {
 
 /// A folder of the running test's own, gone with it.
-class TempFolder {
+class TestFolder {
  public:
-  TempFolder() {
+  TestFolder() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::path(testing::TempDir()) /
             ("sketchsplat_" + std::string(info->test_suite_name()) + "_" + info->name());
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
-  ~TempFolder() { std::filesystem::remove_all(path_); }
+  ~TestFolder() { std::filesystem::remove_all(path_); }
 
   std::string path(const std::string& name = "") const { return (path_ / name).string(); }
   /// Writes a file, with the folders that its name asks for; returns its path.

@@ -206,7 +206,7 @@ TEST(CutRun, FreeformRunIsFewCubicsThatMeet) {
   Eigen::Matrix3Xd points(3, 201);
   for (int i = 0; i <= 200; ++i)
     points.col(i) << i / 200.0, 0.2 * std::sin(i / 30.0), 0.1 * std::cos(i / 20.0);
-  const std::vector<RunPiece> pieces = cut_run(points, 1e-4);
+  const std::vector<MeshCurve> pieces = cut_run(points, 1e-4);
   EXPECT_LT(pieces.size(), 20u);
   EXPECT_EQ(pieces.front().first, 0);
   EXPECT_EQ(pieces.back().last, 200);

@@ -39,10 +39,10 @@ class Finder {
       const StrokeKind kind = sketch.strokes[s].kind;
       if (kind != StrokeKind::kCircle && kind != StrokeKind::kArc) continue;
       const CircleParameters c = circle_parameters(sketch, s);
-      const Rim rim{c.centre, c.normal, c.radius};
+      const CircleRim rim{c.centre, c.normal, c.radius};
       if (c.straight || c.radius > extent_) continue;
-      const auto same =
-          std::find_if(rims_.begin(), rims_.end(), [&](const Rim& r) { return alike(r, rim); });
+      const auto same = std::find_if(rims_.begin(), rims_.end(),
+                                     [&](const CircleRim& r) { return alike(r, rim); });
       if (same == rims_.end()) {
         rims_.push_back(rim);
         strokes_.push_back({s});
@@ -62,7 +62,7 @@ class Finder {
         if (bend) bends_.push_back(*bend);
       }
     }
-    for (const Rim& rim : rims_) propose_caps(rim);
+    for (const CircleRim& rim : rims_) propose_caps(rim);
     for (const Bend& bend : bends_) propose_bend(bend);
     take();
     add_hollows();
@@ -75,7 +75,7 @@ class Finder {
     found_.surfaces.push_back(
         {s, strokes_on(s, polylines_, tolerance_), around_tube, patch.holds, bonus});
   }
-  bool alike(const Rim& a, const Rim& b) const {
+  bool alike(const CircleRim& a, const CircleRim& b) const {
     return (a.centre - b.centre).norm() <= 2 * tolerance_ &&
            std::abs(a.radius - b.radius) <= 2 * tolerance_ && std::abs(a.axis.dot(b.axis)) > 0.999;
   }
@@ -101,7 +101,7 @@ class Finder {
     contours_.remove(contours_.touching({s, box.center(), 0.75 * box.diagonal().norm(), between}));
   }
 
-  bool coaxial(const Rim& a, const Rim& b) const {
+  bool coaxial(const CircleRim& a, const CircleRim& b) const {
     const Vector3d between = b.centre - a.centre;
     return std::abs(a.axis.dot(b.axis)) > 0.999 &&
            (between - a.axis * between.dot(a.axis)).norm() <= 2 * tolerance_;
@@ -127,7 +127,7 @@ class Finder {
 
   // Of equal rims it would be a barrel.
   void propose_sphere(size_t i, size_t k) {
-    const Rim &a = rims_[i], &b = rims_[k];
+    const CircleRim &a = rims_[i], &b = rims_[k];
     const double rise = (b.centre - a.centre).dot(a.axis);
     if (!coaxial(a, b) || std::abs(rise) <= 4 * tolerance_) return;
     const Surface sphere = sphere_through(i, k);
@@ -144,14 +144,14 @@ class Finder {
     if (std::abs(a.radius - b.radius) > 4 * tolerance_) hollows_.push_back(patch);
   }
 
-  void propose_rings(const Rim& a, const Rim& b) {
+  void propose_rings(const CircleRim& a, const CircleRim& b) {
     const double half = std::hypot((b.centre - a.centre).norm(), b.radius - a.radius) / 2;
     const double flattest = 2 * std::atan(kLeastBulge * tolerance_ / half);
     if (!coaxial(a, b) || !(flattest < 1)) return;
     for (const double side : {1.0, -1.0}) propose(rings(a, b), side * flattest, side * 2.5);
   }
 
-  void propose_caps(Rim rim) {
+  void propose_caps(CircleRim rim) {
     for (int side = 0; side < 2; ++side) {
       propose(caps(rim), -kFlattest, kFlattest);
       propose(tips(rim), M_PI / 2 - kFlattest, kFlattest);
@@ -257,7 +257,7 @@ class Finder {
   Contours contours_;  // that nothing explains yet
   bool any_contours_;
   int least_;
-  std::vector<Rim> rims_;
+  std::vector<CircleRim> rims_;
   std::vector<std::vector<int>> strokes_;  // of each rim
   std::vector<Bend> bends_;
   std::vector<RoundPatch> hollows_;  // spheres through two rims

@@ -19,7 +19,7 @@ Surface sphere(const Vector3d& centre, const Vector3d& axis, double radius) {
 
 }  // namespace
 
-RoundFamily caps(const Rim& rim) {
+RoundFamily caps(const CircleRim& rim) {
   return [rim](double angle) -> std::optional<RoundPatch> {
     const double rise = rim.radius * std::tan(angle), radius = std::hypot(rim.radius, rise);
     const Vector3d centre = rim.centre + rise * rim.axis;
@@ -30,7 +30,7 @@ RoundFamily caps(const Rim& rim) {
   };
 }
 
-RoundFamily tips(const Rim& rim) {
+RoundFamily tips(const CircleRim& rim) {
   return [rim](double angle) -> std::optional<RoundPatch> {
     const double height = rim.radius * std::tan(angle);
     const Surface cone{SurfaceKind::kCone, rim.centre, rim.axis, rim.radius, -1 / std::tan(angle)};
@@ -43,7 +43,7 @@ RoundFamily tips(const Rim& rim) {
   };
 }
 
-RoundFamily heads(const Rim& rim) {
+RoundFamily heads(const CircleRim& rim) {
   return [rim](double height) -> std::optional<RoundPatch> {
     const Vector3d centre = rim.centre + height * rim.axis;
     const auto above = [=](const Vector3d& p) { return (p - centre).dot(rim.axis) > 0; };
@@ -51,7 +51,7 @@ RoundFamily heads(const Rim& rim) {
   };
 }
 
-RoundFamily rings(const Rim& a, const Rim& b) {
+RoundFamily rings(const CircleRim& a, const CircleRim& b) {
   // Radius and height over the first rim.
   const Vector2d p(a.radius, 0), q(b.radius, (b.centre - a.centre).dot(a.axis));
   const Vector2d chord = q - p, middle = (p + q) / 2;
@@ -77,7 +77,7 @@ RoundFamily rings(const Rim& a, const Rim& b) {
   };
 }
 
-std::optional<Bend> bend_of(const Rim& a, const Rim& b, double tolerance) {
+std::optional<Bend> bend_of(const CircleRim& a, const CircleRim& b, double tolerance) {
   constexpr double kParallel = 0.1;  // [rad]
   if (std::abs(a.radius - b.radius) > 2 * tolerance) return std::nullopt;
   const Vector3d normal = a.axis.cross(b.axis), between = b.centre - a.centre;

@@ -245,7 +245,7 @@ class Drawer {
 
   void add(Run run) {
     if (run.loop) begin_with_longest_edge(&run.vertices);
-    for (const RunPiece& piece : cut_run(columns(run.vertices), kCurve)) {
+    for (const MeshCurve& piece : cut_run(columns(run.vertices), kCurve)) {
       const int begin = is_closed(piece.kind) ? -1 : node(run.vertices[piece.first]);
       const int end = is_closed(piece.kind) ? -1 : node(run.vertices[piece.last]);
       truth_.sketch.add_stroke(piece.kind, begin, end, piece.handles);
@@ -276,7 +276,7 @@ class Drawer {
     return node_[vertex];
   }
 
-  TruthCurve curve(const std::vector<int>& vertices, const RunPiece& piece) const {
+  TruthCurve curve(const std::vector<int>& vertices, const MeshCurve& piece) const {
     static const std::map<StrokeKind, const char*> kTypes = {
         {StrokeKind::kLine, "Line"},           {StrokeKind::kArc, "Circle"},
         {StrokeKind::kCircle, "Circle"},       {StrokeKind::kEllipse, "Ellipse"},

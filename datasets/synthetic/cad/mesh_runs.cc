@@ -79,10 +79,10 @@ double mean_edge(const Matrix3Xd& p, int first, int last) {
   return sum / (last - first);
 }
 
-RunPiece longest_piece(const Matrix3Xd& p, int first, double tolerance) {
+MeshCurve longest_piece(const Matrix3Xd& p, int first, double tolerance) {
   const int most = int(p.cols()) - 1 - first;
   const auto part = [&](int edges) { return Matrix3Xd(p.middleCols(first, edges + 1)); };
-  RunPiece piece;
+  MeshCurve piece;
   piece.first = first;
   Vector3d apex;
   std::vector<Vector3d> handles;
@@ -114,7 +114,7 @@ RunPiece longest_piece(const Matrix3Xd& p, int first, double tolerance) {
   return piece;
 }
 
-bool loop_fits(const Matrix3Xd& points, double tolerance, RunPiece* piece) {
+bool loop_fits(const Matrix3Xd& points, double tolerance, MeshCurve* piece) {
   const int n = int(points.cols()) - 1;
   if (n < kLoopEdges) return false;
   const Matrix3Xd once = points.leftCols(n);
@@ -134,14 +134,14 @@ bool loop_fits(const Matrix3Xd& points, double tolerance, RunPiece* piece) {
 
 // The few edges that a cubic leaves over, too few to tell what they are, are more of its curve
 // where two cubics of equal shares fit and the edges are no longer than its own.
-void share_remainders(const Matrix3Xd& p, double tolerance, std::vector<RunPiece>* pieces) {
+void share_remainders(const Matrix3Xd& p, double tolerance, std::vector<MeshCurve>* pieces) {
   for (size_t i = 1; i < pieces->size(); ++i) {
-    RunPiece a = (*pieces)[i - 1], b = (*pieces)[i];
+    MeshCurve a = (*pieces)[i - 1], b = (*pieces)[i];
     if (a.kind != StrokeKind::kBezier || b.last - b.first >= kCubicEdges) continue;
     if (mean_edge(p, b.first, b.last) > 2 * mean_edge(p, a.first, a.last)) continue;
     a.last = b.first = (a.first + b.last) / 2;
     b.kind = StrokeKind::kBezier;
-    const auto fits = [&](RunPiece* piece) {
+    const auto fits = [&](MeshCurve* piece) {
       return cubic_fits(p.middleCols(piece->first, piece->last - piece->first + 1), tolerance,
                         &piece->handles);
     };
@@ -153,11 +153,11 @@ void share_remainders(const Matrix3Xd& p, double tolerance, std::vector<RunPiece
 
 }  // namespace
 
-std::vector<RunPiece> cut_run(const Matrix3Xd& points, double tolerance) {
+std::vector<MeshCurve> cut_run(const Matrix3Xd& points, double tolerance) {
   const int n = int(points.cols()) - 1;
-  RunPiece loop;
+  MeshCurve loop;
   if (points.col(0) == points.col(n) && loop_fits(points, tolerance, &loop)) return {loop};
-  std::vector<RunPiece> pieces;
+  std::vector<MeshCurve> pieces;
   for (int first = 0; first < n; first = pieces.back().last)
     pieces.push_back(longest_piece(points, first, tolerance));
   share_remainders(points, tolerance, &pieces);

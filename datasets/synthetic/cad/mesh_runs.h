@@ -9,7 +9,7 @@
 namespace sketchsplat {
 
 /// A piece of a run of mesh edges and the curve that it stands for.
-struct RunPiece {
+struct MeshCurve {
   StrokeKind kind = StrokeKind::kLine;
   int first = 0, last = 0;               ///< columns of the run; closed kinds span the whole of it
   std::vector<Eigen::Vector3d> handles;  ///< as many as the kind has
@@ -18,6 +18,6 @@ struct RunPiece {
 /// Cuts a run of points without corners (3 x N, N >= 2) into lines, arcs and cubics that end on its
 /// points; a run that closes (last point = first) may be one circle or ellipse. Every point lies
 /// within `tolerance` of its curve.
-std::vector<RunPiece> cut_run(const Eigen::Matrix3Xd& points, double tolerance);
+std::vector<MeshCurve> cut_run(const Eigen::Matrix3Xd& points, double tolerance);
 
 }  // namespace sketchsplat
