@@ -10,6 +10,7 @@
 #include "datasets/types/errors.h"
 #include "pipelines/cameras/camera_unknowns.h"
 #include "tests/pipelines/rendered_part.h"
+#include "tests/support/house.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {
@@ -19,20 +20,6 @@ using namespace test;  // NOLINT
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-const Vector3d kMiddle(0.5, 0.5, 0.5);
-
-// A block and a bar on it: what it shows fixes a camera.
-std::vector<Polyline> house() {
-  std::vector<Polyline> out = cube_edges({0.2, 0.2, 0.2}, 0.6);
-  for (const Polyline& p : cube_edges({0.35, 0.42, 0.3}, 0.25)) out.push_back(p);
-  return out;
-}
-
-std::vector<EdgelMap> pictures(const std::vector<View>& views) {
-  std::vector<EdgelMap> maps;
-  for (const View& v : views) maps.push_back(ideal_edgels(v, house()));
-  return maps;
-}
 
 // Turned and shifted so that the object moves by some pixels, another way in each view.
 View jogged(View v, int k, double px) {
@@ -53,7 +40,7 @@ PosedStrokes posed(const std::vector<View>& stated, const std::vector<View>& tru
                    RunReport* report, const std::string& how = "auto") {
   ReconstructOptions options;
   options.refine_poses = how;
-  return pose_and_fit({}, make_edge_world(stated, pictures(truth)), options, report, nullptr);
+  return pose_and_fit({}, make_edge_world(stated, house_edgels(truth)), options, report, nullptr);
 }
 
 // Of sides and diagonals of what was found to what is true: largest distance after a shift, turn
@@ -82,12 +69,12 @@ double shape_error(const Sketch& found) {
 }
 
 TEST(CameraUnknowns, DerivativesAreThoseOfDifferences) {
-  std::vector<View> views = ring_of_views(4, kMiddle, 3);
+  std::vector<View> views = ring_of_views(4, kHouseMiddle, 3);
   for (View& v : views) {
     v.camera.fy = 510;
     v.lens = Lens(LensModel::kOpencv, {-0.1, 0.02, 0.003, -0.002});
   }
-  CameraUnknowns cameras(views, kMiddle, {60, 60, 60, 60}, {});
+  CameraUnknowns cameras(views, kHouseMiddle, {60, 60, 60, 60}, {});
   ASSERT_EQ(cameras.cameras(), 1);
   EXPECT_EQ(cameras.size(), 4 * 6 + 8) << "focal length, aspect, centre and four terms";
   const Vector3d point(0.7, 0.3, 0.6);
@@ -119,8 +106,8 @@ TEST(CameraUnknowns, DerivativesAreThoseOfDifferences) {
 }
 
 TEST(CameraUnknowns, ValuesMakeTheCamerasThatTheyAreMadeOf) {
-  const std::vector<View> views = ring_of_views(3, kMiddle, 3);
-  CameraUnknowns cameras(views, kMiddle, {60, 60, 60}, {});
+  const std::vector<View> views = ring_of_views(3, kHouseMiddle, 3);
+  CameraUnknowns cameras(views, kHouseMiddle, {60, 60, 60}, {});
   VectorXd value(cameras.size());
   for (int k = 0; k < value.size(); ++k) value[k] = std::sin(k + 1.0);
   cameras.set(value);
@@ -128,11 +115,11 @@ TEST(CameraUnknowns, ValuesMakeTheCamerasThatTheyAreMadeOf) {
 }
 
 TEST(CameraUnknowns, WhatViewsShareStaysIfItIsNoUnknown) {
-  std::vector<View> views = ring_of_views(3, kMiddle, 3);
+  std::vector<View> views = ring_of_views(3, kHouseMiddle, 3);
   for (View& v : views) v.lens = Lens(LensModel::kOpencv, {-0.1, 0.02, 0.003, -0.002});
   CameraPrior prior;
   prior.shared = false;
-  CameraUnknowns cameras(views, kMiddle, {60, 60, 60}, prior);
+  CameraUnknowns cameras(views, kHouseMiddle, {60, 60, 60}, prior);
   EXPECT_EQ(cameras.size(), 3 * 6);
   EXPECT_EQ(cameras.num_shared(0), 0);
   cameras.set(VectorXd::Ones(cameras.size()));
@@ -144,7 +131,7 @@ TEST(CameraUnknowns, WhatViewsShareStaysIfItIsNoUnknown) {
 }
 
 TEST(RefinePoses, ExactCamerasAreLeftAlone) {
-  const std::vector<View> views = ring_of_views(20, kMiddle, 3);
+  const std::vector<View> views = ring_of_views(20, kHouseMiddle, 3);
   RunReport a, b;
   const PosedStrokes untouched = posed(views, views, &a);
   EXPECT_FALSE(untouched.refined);
@@ -153,8 +140,8 @@ TEST(RefinePoses, ExactCamerasAreLeftAlone) {
 }
 
 TEST(RefinePoses, EdgesThatErrByThemselvesAreNoReasonToMoveExactCameras) {
-  const std::vector<View> views = ring_of_views(20, kMiddle, 3);
-  std::vector<EdgelMap> maps = pictures(views);
+  const std::vector<View> views = ring_of_views(20, kHouseMiddle, 3);
+  std::vector<EdgelMap> maps = house_edgels(views);
   for (size_t v = 0; v < maps.size(); ++v)
     for (int c = 0; c < maps[v].num_chains(); ++c) {
       const double off =
@@ -170,7 +157,7 @@ TEST(RefinePoses, EdgesThatErrByThemselvesAreNoReasonToMoveExactCameras) {
 }
 
 TEST(RefinePoses, CamerasThatErrComeBack) {
-  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  const std::vector<View> truth = ring_of_views(20, kHouseMiddle, 3);
   for (const double px : {0.7, 2.0, 3.0}) {
     RunReport report, other;
     const std::vector<View> stated = jogged(truth, px);
@@ -183,7 +170,7 @@ TEST(RefinePoses, CamerasThatErrComeBack) {
 }
 
 TEST(RefinePoses, PosesThatErrChangeNeitherScaleNorPlace) {
-  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  const std::vector<View> truth = ring_of_views(20, kHouseMiddle, 3);
   RunReport report;
   const PosedStrokes out = posed(jogged(truth, 2), truth, &report);
   ASSERT_TRUE(out.refined);
@@ -196,7 +183,7 @@ TEST(RefinePoses, PosesThatErrChangeNeitherScaleNorPlace) {
 }
 
 TEST(RefinePoses, AWrongFocalLengthIsFound) {
-  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  const std::vector<View> truth = ring_of_views(20, kHouseMiddle, 3);
   std::vector<View> stated = truth;
   for (View& v : stated) v.camera.fx *= 1.02, v.camera.fy *= 1.02;
   RunReport report;
@@ -206,7 +193,7 @@ TEST(RefinePoses, AWrongFocalLengthIsFound) {
 }
 
 TEST(RefinePoses, AViewThatContradictsTheOthersIsNamedAndLeftOut) {
-  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  const std::vector<View> truth = ring_of_views(20, kHouseMiddle, 3);
   std::vector<View> stated = truth;
   stated[7] = jogged(truth[7], 7, 40);
   RunReport report;
@@ -217,7 +204,7 @@ TEST(RefinePoses, AViewThatContradictsTheOthersIsNamedAndLeftOut) {
 }
 
 TEST(RefinePoses, CamerasInTheWrongOrderAreRefused) {
-  const std::vector<View> truth = ring_of_views(20, kMiddle, 3);
+  const std::vector<View> truth = ring_of_views(20, kHouseMiddle, 3);
   std::vector<View> stated = truth;
   for (size_t k = 0; k < stated.size(); ++k) {
     stated[k].cam_from_world = truth[(7 * k + 3) % 20].cam_from_world;

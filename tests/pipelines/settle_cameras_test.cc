@@ -5,6 +5,7 @@
 
 #include "pipelines/cameras/bring_back.h"
 #include "pipelines/cameras/posed.h"
+#include "tests/support/house.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {
@@ -12,15 +13,7 @@ namespace {
 
 using namespace test;  // NOLINT
 using Eigen::Vector3d;
-const Vector3d kMiddle(0.5, 0.5, 0.5);
 constexpr int kViews = 16;
-
-// A block and a bar in it: what it shows fixes a camera.
-std::vector<Polyline> edges() {
-  std::vector<Polyline> out = cube_edges({0.2, 0.2, 0.2}, 0.6);
-  for (const Polyline& p : cube_edges({0.35, 0.42, 0.3}, 0.25)) out.push_back(p);
-  return out;
-}
 
 Sketch strokes_of(const std::vector<Polyline>& lines) {
   Sketch sketch;
@@ -28,15 +21,9 @@ Sketch strokes_of(const std::vector<Polyline>& lines) {
   return sketch;
 }
 
-std::vector<EdgelMap> pictures(const std::vector<View>& views) {
-  std::vector<EdgelMap> maps;
-  for (const View& v : views) maps.push_back(ideal_edgels(v, edges()));
-  return maps;
-}
-
 // Shifted so that the object moves by so many pixels.
 View shifted(View v, double dx, double dy) {
-  const double depth = (v.cam_from_world * kMiddle).z();
+  const double depth = (v.cam_from_world * kHouseMiddle).z();
   v.cam_from_world.translation += Vector3d(dx * depth / v.camera.fx, dy * depth / v.camera.fy, 0);
   return v;
 }
@@ -44,32 +31,32 @@ View shifted(View v, double dx, double dy) {
 // Largest distance [px] of corners of the object in one camera and in another.
 double apart_px(const View& a, const View& b) {
   double worst = 0, depth;
-  for (const Polyline& p : edges())
+  for (const Polyline& p : house())
     worst = std::max(worst, (a.project(p[0], &depth) - b.project(p[0], &depth)).norm());
   return worst;
 }
 
 TEST(BringBack, AViewThatIsSixPixelsOffComesBackAndTheOthersStay) {
-  const std::vector<View> truth = ring_of_views(kViews, kMiddle, 3);
+  const std::vector<View> truth = ring_of_views(kViews, kHouseMiddle, 3);
   std::vector<View> stated = truth;
   stated[5] = shifted(truth[5], 5, -3.5);
-  EdgeWorld world = make_edge_world(stated, pictures(truth));
-  EXPECT_EQ(bring_back(strokes_of(edges()), {stated}, {}, &world), 1);
+  EdgeWorld world = make_edge_world(stated, house_edgels(truth));
+  EXPECT_EQ(bring_back(strokes_of(house()), {stated}, {}, &world), 1);
   EXPECT_LT(apart_px(world.views[5], truth[5]), 0.1);
   for (int v = 0; v < kViews; ++v)
     EXPECT_EQ(apart_px(world.views[v], v == 5 ? world.views[5] : stated[v]), 0) << v;
 }
 
 TEST(BringBack, NothingMovesWhereAllViewsFitOrNothingIsDrawn) {
-  const std::vector<View> truth = ring_of_views(kViews, kMiddle, 3);
-  EdgeWorld world = make_edge_world(truth, pictures(truth));
-  EXPECT_EQ(bring_back(strokes_of(edges()), {truth}, {}, &world), 0);
+  const std::vector<View> truth = ring_of_views(kViews, kHouseMiddle, 3);
+  EdgeWorld world = make_edge_world(truth, house_edgels(truth));
+  EXPECT_EQ(bring_back(strokes_of(house()), {truth}, {}, &world), 0);
   EXPECT_EQ(bring_back({}, {truth}, {}, &world), 0);
 }
 
 TEST(FitCameras, StrokesThatWanderFromViewToViewHardlyBendTheCameras) {
-  const std::vector<View> truth = ring_of_views(kViews, kMiddle, 3);
-  std::vector<EdgelMap> maps = pictures(truth);
+  const std::vector<View> truth = ring_of_views(kViews, kHouseMiddle, 3);
+  std::vector<EdgelMap> maps = house_edgels(truth);
   constexpr int kWandering = 10;  // edges, all to one side in a view, as outlines of rounds do
   for (int v = 0; v < kViews; ++v) {
     EdgelMap& map = maps[v];
@@ -78,7 +65,7 @@ TEST(FitCameras, StrokesThatWanderFromViewToViewHardlyBendTheCameras) {
       map.edgels[i].x += float(by.x()), map.edgels[i].y += float(by.y());
     build_lookup(&map, 4.0);
   }
-  const Sketch sketch = strokes_of(edges());
+  const Sketch sketch = strokes_of(house());
   EdgeWorld world = make_edge_world(truth, maps);
   for (int k = 0; k < 4; ++k) {
     MatchOptions match;
@@ -92,8 +79,8 @@ TEST(FitCameras, StrokesThatWanderFromViewToViewHardlyBendTheCameras) {
 }
 
 TEST(Posed, StrokesThatAreRoundAreNoWitnessesOfCameras) {
-  const std::vector<View> views = ring_of_views(kViews, kMiddle, 3);
-  Posed posed{make_edge_world(views, pictures(views)), strokes_of(edges())};
+  const std::vector<View> views = ring_of_views(kViews, kHouseMiddle, 3);
+  Posed posed{make_edge_world(views, house_edgels(views)), strokes_of(house())};
   posed.round.assign(posed.sketch.size(), 0);
   const Observation all = look(posed, 2);
   posed.round[3] = 1;
