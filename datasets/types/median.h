@@ -16,6 +16,14 @@ Number median(std::vector<Number> values) {
   return *middle;
 }
 
+/// The value that this share of all values lie below; `values`: one or more.
+template <class Number>
+Number quantile(std::vector<Number> values, double share) {
+  const size_t at = std::min(values.size() - 1, size_t(share * double(values.size())));
+  std::nth_element(values.begin(), values.begin() + long(at), values.end());
+  return values[at];
+}
+
 /// Standard deviation of normal numbers of mean 0, from their absolute values: outliers do not
 /// matter (Hampel: The influence curve and its role in robust estimation, JASA 1974). 0 of none.
 template <class Number>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "datasets/types/median.h"
 #include "edges/views/recast.h"
 #include "pipelines/survey/explained.h"
 
@@ -19,12 +20,6 @@ constexpr double kUsual = 0.75;    // quantile of views, of these shares of thei
 constexpr double kPoor = 0.85;     // times what strokes explain of the usual view
 constexpr double kFarMore = 1.2;   // times what they have explained
 constexpr double kAsUsual = 0.75;  // times what they explain of the usual view
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + long(share * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 // Turned so that what it shows moves by so many pixels.
 View turned(View v, const Eigen::Vector2d& px) {

@@ -5,15 +5,16 @@
 #include <array>
 #include <cmath>
 
+#include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 
 namespace sketchsplat {
 namespace {
 
-constexpr int kEvery = 3;      // samples: the hull is coarse
-constexpr int kRates = 10;     // shares of the views that see an edge, over which is integrated
+constexpr int kEvery = 3;   // samples: the hull is coarse
+constexpr int kRates = 10;  // shares of the views that see an edge, over which is integrated
 constexpr double kMedian = 1.4826;  // median of absolute values of a standard deviation, inverse
-constexpr int kManyViews = 8;  // see most strokes that are edges
+constexpr int kManyViews = 8;       // see most strokes that are edges
 
 // Edgels on strokes that many views see.
 struct SureEdgels {
@@ -36,17 +37,11 @@ SureEdgels sure_edgels(const EdgeWorld& world, const Observation& every) {
   return out;
 }
 
-float quantile(std::vector<float>* values, double share) {
-  const auto at = values->begin() + std::min<size_t>(values->size() - 1, share * values->size());
-  std::nth_element(values->begin(), at, values->end());
-  return *at;
-}
-
 }  // namespace
 
 double scatter_px(const EdgeWorld& world, const Observation& every) {
   SureEdgels edgels = sure_edgels(world, every);
-  return edgels.distance_px.empty() ? 0 : kMedian * quantile(&edgels.distance_px, 0.5);
+  return edgels.distance_px.empty() ? 0 : kMedian * quantile(edgels.distance_px, 0.5);
 }
 
 StrokeJudge::StrokeJudge(const EdgeWorld& world, const Observation& every, double reach_px,
@@ -57,10 +52,10 @@ StrokeJudge::StrokeJudge(const EdgeWorld& world, const Observation& every, doubl
   std::vector<float>& widths = edgels.log_width;
   if (!widths.empty()) {
     // What the cameras err counts, too: edgels of a view scatter about a line beside the stroke.
-    sigma_ = std::max<double>(sigma_, kMedian * quantile(&edgels.distance_px, 0.5));
+    sigma_ = std::max<double>(sigma_, kMedian * quantile(edgels.distance_px, 0.5));
     // Sharp edges are the narrow ones: their spread is that below the median.
-    log_width_ = quantile(&widths, 0.5);
-    width_sigma_ = std::max(model.least_width_sigma, log_width_ - quantile(&widths, 0.16));
+    log_width_ = quantile(widths, 0.5);
+    width_sigma_ = std::max(model.least_width_sigma, log_width_ - quantile(widths, 0.16));
   }
   peak_ = 2 * reach_px / (sigma_ * std::sqrt(2 * M_PI));
   const int strokes = int(every.layout.first.size()) - 1, views = int(world.views.size());
@@ -106,8 +101,7 @@ double StrokeJudge::nats(int stroke, const EdgelFlags* others) const {
       const SampleMatch& match = every_.matches.matches[m];
       const double r = match.distance_px / sigma_;
       const bool theirs = others && (*others)[match.view][match.edgel];
-      const double near =
-          model_.accident + (1 - model_.accident) * peak_ * std::exp(-0.5 * r * r);
+      const double near = model_.accident + (1 - model_.accident) * peak_ * std::exp(-0.5 * r * r);
       found[match.view] +=
           theirs ? 1 : near * sharpness(world_.maps[match.view].edgels[match.edgel].width);
       ++edgels[match.view];

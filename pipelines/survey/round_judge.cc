@@ -42,12 +42,6 @@ struct Gathered {
   int outline = 0;
 };
 
-float quantile(std::vector<float> values, double share) {
-  const auto at = values.begin() + std::min<size_t>(values.size() - 1, share * values.size());
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 // Where values are densest: the middle of the shortest half, of that, and so on.
 double half_sample_mode(std::vector<float> x) {
   std::sort(x.begin(), x.end());

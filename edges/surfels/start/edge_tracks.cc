@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "datasets/types/median.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -10,12 +12,6 @@ constexpr int kFewestViews = 3;  // that tell what a point is
 constexpr int kBeside = 2;       // measured points to either side that have a say
 constexpr double kSome = 0.75;   // of the views say no more than print may
 constexpr double kSure = 0.5;    // that there is an edge: at the thresholds
-
-double quantile(double share, std::vector<float>* values) {
-  const size_t k = std::min(values->size() - 1, size_t(share * double(values->size())));
-  std::nth_element(values->begin(), values->begin() + k, values->end());
-  return (*values)[k];
-}
 
 // How surely a point is on an edge of the shape: a quantile over the views; -1: too few tell.
 std::vector<float> gather(int points, double share, const std::vector<TrackSightings>& sightings,
@@ -27,7 +23,7 @@ std::vector<float> gather(int points, double share, const std::vector<TrackSight
         edge[sightings[v].point[k]].push_back(support[v][k].edge);
   std::vector<float> out(points, -1);
   for (int i = 0; i < points; ++i)
-    if (int(edge[i].size()) >= kFewestViews) out[i] = float(quantile(share, &edge[i]));
+    if (int(edge[i].size()) >= kFewestViews) out[i] = float(quantile(edge[i], share));
   return out;
 }
 
@@ -36,7 +32,7 @@ double around(const std::vector<float>& values, const std::vector<int>& told, in
   std::vector<float> near;
   for (int j = std::max(0, k - kBeside); j <= std::min(int(told.size()) - 1, k + kBeside); ++j)
     near.push_back(values[told[j]]);
-  return quantile(0.5, &near);
+  return quantile(near, 0.5);
 }
 
 // Not round a corner, where what is printed meets an edge?
