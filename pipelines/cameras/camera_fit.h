@@ -18,8 +18,8 @@ struct StatedCameras {
 
 /// How cameras and strokes are fitted.
 struct CameraFitOptions {
-  int steps = 3;                 ///< at most
-  bool strokes_move = true;      ///< false: strokes stay where they are (resection)
+  int steps = 3;             ///< at most
+  bool strokes_move = true;  ///< false: strokes stay where they are (resection)
 };
 
 /// Cameras and strokes that agree best with matched edgels, and how well.

@@ -22,8 +22,9 @@ constexpr double kTimesChance = 2;
 constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be mended
 constexpr double kAstrayPx = 0.4;    // strokes by cameras that are right lie stiller in views
 constexpr double kStillPx = 0.25;    // edgels lie on strokes, by such cameras
-constexpr double kNoWorse = 0.9;  // times these edgels, for cameras to move that strokes say err;
-constexpr double kMuchBetter = 1.5;  // for others
+// Times these edgels, for cameras to move of which strokes say that they err, and for others; none
+// fewer among things, whose few strokes fit any cameras.
+constexpr double kNoWorse = 0.9, kMuchBetter = 1.5;
 constexpr int kFewestViews = 3;
 constexpr int kEnoughViews = 8;  // where most edges are seen by as many as a point takes
 constexpr double kAwry = 0.05;   // of the width of a picture: nothing but accidents fits
