@@ -27,6 +27,9 @@ constexpr double kSigmaPx = 0.12;  // standard deviation of a piece's outline in
 constexpr double kCoarsePx = 0.3;  // strokes that are off by more tell nothing
 constexpr double kOffRoundPx = 1;  // standard deviation of a stroke from its round
 constexpr size_t kFewestViews = 6;
+constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
+constexpr double kWeak = 1e-3;
+constexpr double kWidest = 100;  // chamfer, over the narrowest
 constexpr double kOnItPx = 0.5;  // a stroke is the outline itself, in some
 constexpr int kFewestOnIt = 2;
 // Share of the views in which something else lies beside it: near a round hardly anything does,
@@ -128,14 +131,23 @@ double nats_of_two(const Sightings& seen, const Vector2d& other, double sigma, d
   return sum;
 }
 
-// [nat] The same where both are convex edges of one part: the outline runs along the outer one.
-double nats_of_outer(const Sightings& seen, const Vector2d& other, double sigma, double accident,
+// Two convex edges of one part, places [px] relative to the stroke: the outline is the outer one's.
+struct TwoEdges {
+  Vector2d first, second;
+};
+
+// 0 or 1: the outer edge as a view has it, with its place.
+std::pair<int, double> outer_edge(const RoundSighting& v, const TwoEdges& edges) {
+  const double a = v.row.head<2>().dot(edges.first), b = v.row.head<2>().dot(edges.second);
+  return (v.row.z() > 0) == (b > a) ? std::pair(1, b) : std::pair(0, a);
+}
+
+// [nat]
+double nats_of_outer(const Sightings& seen, const TwoEdges& edges, double sigma, double accident,
                      double peak) {
   double sum = 0;
   for (const RoundSighting& v : seen) {
-    const double at = v.row.head<2>().dot(other);
-    const double outer = v.row.z() > 0 ? std::max(0.0, at) : std::min(0.0, at);
-    const double r = (v.place_px - outer) / sigma;
+    const double r = (v.place_px - outer_edge(v, edges).second) / sigma;
     sum += std::log(accident + (1 - accident) * peak * std::exp(-0.5 * r * r));
   }
   return sum;
@@ -156,16 +168,69 @@ std::optional<Vector2d> likeliest_other(const Sightings& seen, const Sightings& 
       if (std::abs(A.determinant()) < kLeastDeterminant) continue;
       const Vector2d other = A.inverse() * Vector2d(far[i].place_px, far[j].place_px);
       if (other.norm() > kFarthest * reach) continue;
-      const double nats = std::max(nats_of_two(seen, other, sigma, kAccident, peak),
-                                   nats_of_outer(seen, other, sigma, kAccident, peak));
+      const double nats =
+          std::max(nats_of_two(seen, other, sigma, kAccident, peak),
+                   nats_of_outer(seen, {Vector2d::Zero(), other}, sigma, kAccident, peak));
       if (nats > most) most = nats, best = other;
     }
   return best;
 }
 
+// Two edges that are the outer one for views from one side each: `share` of them see the first.
+TwoEdges split_edges(const Sightings& seen, double share) {
+  Vector2d mean = Vector2d::Zero();
+  for (const RoundSighting& v : seen) mean += std::copysign(1.0, v.row.z()) * v.row.head<2>();
+  const auto turn = [&](const RoundSighting& v) {
+    const Vector2d u = std::copysign(1.0, v.row.z()) * v.row.head<2>();
+    return std::atan2(mean.x() * u.y() - mean.y() * u.x(), mean.dot(u));
+  };
+  Sightings sorted = seen;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](const auto& a, const auto& b) { return turn(a) < turn(b); });
+  const auto meet = [&](size_t begin, size_t end) -> Vector2d {
+    Matrix2d H = kWeak * Matrix2d::Identity();
+    Vector2d g = Vector2d::Zero();
+    for (size_t i = begin; i < end; ++i) {
+      const Vector2d row = sorted[i].row.head<2>();
+      H += row * row.transpose(), g += row * sorted[i].place_px;
+    }
+    return H.ldlt().solve(g);
+  };
+  const size_t split = size_t(share * double(sorted.size()));
+  return {meet(0, split), meet(split, sorted.size())};
+}
+
+// [nat] Two edges between which the stroke runs, or near: those of a chamfer. Over all their
+// places; widths are as likely by their logarithm.
+double places_of_chamfer(const Sightings& seen, TwoEdges edges, double sigma, double reach) {
+  constexpr int kFits = 8;
+  const double peak = 2 * reach / (sigma * kRoot2Pi);
+  Eigen::Matrix4d H;  // times the variance
+  for (int k = 0; k < kFits; ++k) {
+    H = kWeak * Eigen::Matrix4d::Identity();
+    Eigen::Vector4d g = Eigen::Vector4d::Zero();
+    const double s = k < kFits / 2 ? 3 * sigma : sigma;
+    for (const RoundSighting& v : seen) {
+      const auto [which, at] = outer_edge(v, edges);
+      const double r = (v.place_px - at) / s, w = std::exp(-0.5 * r * r);
+      const Vector2d row = v.row.head<2>();
+      H.block<2, 2>(2 * which, 2 * which) += w * row * row.transpose();
+      g.segment<2>(2 * which) += w * row * v.place_px;
+    }
+    const Eigen::Vector4d x = H.ldlt().solve(g);
+    if (!x.allFinite()) return -INFINITY;
+    edges = {x.head<2>(), x.tail<2>()};
+  }
+  const double width = std::max(sigma, (edges.second - edges.first).norm());
+  const double off = 0.5 * (edges.first + edges.second).norm() / kOffRoundPx;
+  const double prior = -0.5 * off * off - std::log(2 * M_PI * kOffRoundPx * kOffRoundPx) -
+                       std::log(2 * M_PI * width * width * std::log(kWidest));
+  return nats_of_outer(seen, edges, sigma, kBesideEdge, peak) + prior +
+         4 * std::log(kRoot2Pi * sigma) - 0.5 * std::log(H.determinant());
+}
+
 // [nat] An edge with another one along it, at some place of its own: over places anywhere.
 double places_of_two(const Sightings& seen, double sigma, double reach) {
-  constexpr double kRoot2Pi = 2.5066283, kWeak = 1e-3;
   constexpr double kOff = 1.5;  // standard deviations: other edges may lie near
   constexpr int kFits = 3;
   const double peak = 2 * reach / (sigma * kRoot2Pi);
@@ -189,7 +254,7 @@ double places_of_two(const Sightings& seen, double sigma, double reach) {
   const double occam = 2 * std::log(reach / sigma) + 0.5 * std::log(H.determinant());
   return std::max({nats_of_two(seen, *other, sigma, kBesideEdge, peak),
                    nats_of_two(seen, *other, sigma, kBesideEdges, peak),
-                   nats_of_outer(seen, *other, sigma, kBesideEdge, peak)}) -
+                   nats_of_outer(seen, {Vector2d::Zero(), *other}, sigma, kBesideEdge, peak)}) -
          occam;
 }
 
@@ -286,7 +351,12 @@ double RoundJudge::nats_of_outlines(int stroke) const {
   }
   const double edge = std::max(places_of_edge(seen, {kSigmaPx, kFarPx, kBesideEdge}),
                                places_of_edge(seen, {kSigmaPx, kFarPx, kBesideEdges}));
-  const double two = rim > edge ? places_of_two(seen, kSigmaPx, kFarPx) : -INFINITY;
+  double two = -INFINITY;
+  if (rim > edge) {
+    two = places_of_two(seen, kSigmaPx, kFarPx);
+    for (const double share : {0.3, 0.5, 0.7})
+      two = std::max(two, places_of_chamfer(seen, split_edges(seen, share), kSigmaPx, kFarPx));
+  }
   return model_.witnesses * (rim - std::max(edge, two)) / outlines.pieces;
 }
 

@@ -104,17 +104,26 @@ TEST(RoundJudge, ASightingIsTheMedianPlaceAndWidthOfItsEdgels) {
   EXPECT_GT(largest, 0.4);
 }
 
-// A cube one edge of which is cut off: two edges side by side, of which the stroke is one.
+// A cube one edge of which is cut off: two edges side by side, of which the stroke is one, or which
+// it runs between.
 struct CutEdge {
   Sketch sketch;
   EdgeWorld world;
-  explicit CutEdge(double width_px) {
+  explicit CutEdge(double width_px, double across = 0) {
     const double cut = width_px * kPixel / std::sqrt(2.0);
     const Vector2d a(0.8 - cut, 0.8), b(0.8, 0.8 - cut);
     const auto edge = [](const Vector2d& at) {
       return segment({0.2, at.x(), at.y()}, {0.8, at.x(), at.y()});
     };
-    add_line(&sketch, edge(a)[0], edge(a)[1]);
+    const Polyline stroke = edge(a + across * (b - a));
+    add_line(&sketch, stroke[0], stroke[1]);
+    std::vector<Polyline> shown = {edge(a), edge(b)};
+    for (const Polyline& e :
+         cube_edges({0.2, 0.2, 0.2}, 0.6)) {  // they tell how exactly strokes lie
+      if (e[0].tail<2>().minCoeff() > 0.7 && e[1].tail<2>().minCoeff() > 0.7) continue;
+      add_line(&sketch, e[0], e[1]);
+      shown.push_back(e);
+    }
     std::vector<EdgelMap> maps;
     const std::vector<View> views = ring_of_views(40, kMiddle, 3);
     for (const View& view : views) {
@@ -122,12 +131,12 @@ struct CutEdge {
       const Vector3d c = view.center_in_world();
       const Vector2d camera(c.y(), c.z()), along = b - a, to = a - camera;
       const bool faces = along.x() * to.y() - along.y() * to.x() < 0;
-      EdgelMap map = ideal_edgels(view, {edge(a), edge(b)});
+      EdgelMap map = ideal_edgels(view, shown);
       turn_to_middle(view, &map);
       for (Edgel& e : map.edgels) e.width = kSharp;
       const bool outline = (c.y() > 0.8) != (c.z() > 0.8);
-      const size_t half = map.chain[1];
-      for (size_t i = 0; i < map.edgels.size(); ++i)
+      const size_t half = map.chain[1], both = map.chain[2];
+      for (size_t i = 0; i < both; ++i)
         map.edgels[i].outline = outline && (i < half) == ((c.y() > 0.8) == faces);
       maps.push_back(map);
     }
@@ -176,6 +185,20 @@ TEST(RoundJudge, OutlinesFarBesideAStrokeTellARoundFromEdgesSideBySide) {
     const Observation wide = observe_rounds(s.sketch, s.world, 0);
     EXPECT_LT(RoundJudge(s.world, wide, {}).nats(0, nullptr), 0) << width;
   }
+}
+
+TEST(RoundJudge, ANarrowCutIsNoRoundThoughItsStrokeRunsBetweenTheTwoEdges) {
+  RoundModel outlines_alone;
+  outlines_alone.accident = 1;  // what lies near a stroke tells nothing
+  for (const double width : {1.5, 2.0, 3.0})
+    for (const double across : {0.25, 0.5, 0.75}) {
+      const CutEdge s(width, across);
+      const Observation wide = observe_rounds(s.sketch, s.world, 0);
+      EXPECT_LT(RoundJudge(s.world, wide, outlines_alone).nats(0, nullptr), 2)
+          << width << " " << across;
+    }
+  const Scene round(8);
+  EXPECT_GT(round.nats(outlines_alone), 5);
 }
 
 TEST(RoundJudge, EdgelsOfOthersTellNothing) {
