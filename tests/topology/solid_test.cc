@@ -9,8 +9,8 @@
 #include "topology/brep/solid_step.h"
 #include "topology/faces/find_planes.h"
 #include "topology/solid/cell_index.h"
-#include "topology/solid/keep_faces.h"
 #include "topology/solid/find_solid.h"
+#include "topology/solid/keep_faces.h"
 #include "topology/solid/surface.h"
 
 namespace sketchsplat {
@@ -85,6 +85,34 @@ TEST(FindSolid, ConesAreToldIfTheLeastDescriptionIsEnough) {
   const SolidSearch search = find_solid(cone_solid(0.5).edges, options);
   ASSERT_TRUE(search.solid) << search.why;
   EXPECT_NEAR(write_solid_step(*search.solid, "").volume, M_PI / 3 * (1 + 0.5 + 0.25), 1e-6);
+}
+
+// A plate with a hole that narrows; `above` of twelve cameras look straight into it, the others
+// from low around.
+SolidSearch solid_of_tapered_hole(int above) {
+  SolidMaker m;
+  const Vector3d up = Vector3d::UnitZ();
+  m.box({0, 0, 0}, {2, 1, 0.5});
+  m.circle({0.6, 0.5, 0.5}, up, 0.25);
+  m.circle({0.6, 0.5, 0}, up, 0.15);
+  SolidEvidence evidence;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = 2 * M_PI * i / 12;
+    const Vector3d around(std::cos(angle), std::sin(angle), 0);
+    const Vector3d from =
+        Vector3d(0.6, 0.5, 0.5) + (i < above ? 1 : 20) * around + (i < above ? 20 : 1) * up;
+    evidence.sights.push_back({from, {0, 0, 0.5}, false, 1});
+  }
+  SolidOptions options;
+  options.margin = 0.25;
+  return find_solid(m.solid.edges, options, evidence);
+}
+
+TEST(FindSolid, ATaperedHoleMustBeSeenIntoForItMayBeStepped) {
+  EXPECT_TRUE(solid_of_tapered_hole(8).solid) << solid_of_tapered_hole(8).why;
+  const SolidSearch few = solid_of_tapered_hole(7);
+  EXPECT_FALSE(few.solid);
+  EXPECT_THAT(few.why, HasSubstr("stepped"));
 }
 
 TEST(FindSolid, LinesThatNoImageCanShowAreInferred) {

@@ -92,6 +92,41 @@ EvidenceOfCells weigh_cells(const SolidEvidence& evidence,
   return out;
 }
 
+int cameras_at_worst(const SolidEvidence& evidence, const std::vector<SurfaceStrokes>& surfaces,
+                     const std::vector<Cell>& cells, const std::vector<bool>& chosen, int cell,
+                     double near) {
+  constexpr int kHeights = 8, kAround = 16;
+  const Scales scales(surfaces, cells);
+  const Layout layout = layout_of(surfaces[cells[cell].surface]);
+  const FlatBox box = box_of(cells[cell]);
+  std::vector<Vector3d> cameras;
+  for (const Sight& s : evidence.sights) cameras.push_back(s.from);
+  const auto before = [](const Vector3d& a, const Vector3d& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  };
+  std::sort(cameras.begin(), cameras.end(), before);
+  cameras.erase(std::unique(cameras.begin(), cameras.end()), cameras.end());
+  const auto sees = [&](const Vector3d& camera, const Vector3d& place) {
+    const std::vector<int> met = scales.met(camera, place, 1 - near / (place - camera).norm());
+    return std::none_of(met.begin(), met.end(), [&](int c) { return chosen[c]; });
+  };
+  int fewest = int(cameras.size());
+  for (int h = 0; h < kHeights; ++h) {
+    std::vector<Vector3d> ring;
+    for (int k = 0; k < kAround; ++k) {
+      const Eigen::Vector2d flat = box.at((k + 0.5) / kAround, (h + 0.5) / kHeights);
+      if (holds(cells[cell], layout, flat)) ring.push_back(layout.point(flat));
+    }
+    if (ring.empty()) continue;
+    int count = 0;
+    for (const Vector3d& camera : cameras)
+      count += std::any_of(ring.begin(), ring.end(),
+                           [&](const Vector3d& place) { return sees(camera, place); });
+    fewest = std::min(fewest, count);
+  }
+  return fewest;
+}
+
 int contradicted(const EvidenceOfCells& weighed, const std::vector<bool>& chosen) {
   const auto count = [&](const Meeting& m) {
     return std::count_if(m.cells.begin(), m.cells.end(), [&](int c) { return chosen[c]; });

@@ -55,6 +55,12 @@ EvidenceOfCells weigh_cells(const SolidEvidence& evidence,
                             const std::vector<Cell>& cells, double extent,
                             const EvidencePrices& prices);
 
+/// Fewest of the cameras that have sights which see a cell's surface at some height along its axis,
+/// past the chosen cells: a step instead of it would show to no more of them.
+int cameras_at_worst(const SolidEvidence& evidence, const std::vector<SurfaceStrokes>& surfaces,
+                     const std::vector<Cell>& cells, const std::vector<bool>& chosen, int cell,
+                     double near);
+
 /// Rays that a choice of cells contradicts.
 int contradicted(const EvidenceOfCells& weighed, const std::vector<bool>& chosen);
 

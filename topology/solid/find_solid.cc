@@ -87,6 +87,7 @@ class Search {
     for (size_t c = 0; each && c < sure.cell.size(); ++c)
       if (sure.cell[c] && borders_inferred(choice_.cells[c]))
         keep_common(best, best_without(int(c)), &sure.cell);
+    for (const int c : unseen_tapers(best)) sure.cell[c] = false;
     if (!assemble(all_, choice_.cells, sure, &solid, &edge_of, &why)) return;
     solid = without_left(solid, all_, left_);
     if (solid.faces.empty()) return;
@@ -102,6 +103,19 @@ class Search {
     choice_.open_price.assign(all_.sketch.size(), HUGE_VAL);
     for (int s = 0; s < all_.seen.size(); ++s)
       choice_.open_price[s] = std::min(options_.open_price, choice_.unused_price[s] - kLess);
+  }
+
+  // Cones that may be steps, as far as is seen.
+  std::vector<int> unseen_tapers(const ChosenCells& best) const {
+    std::vector<int> out;
+    for (int c = 0; c < int(best.cell.size()) && !evidence_.sights.empty(); ++c)
+      if (best.cell[c] &&
+          all_.surfaces[choice_.cells[c].surface].surface.kind == SurfaceKind::kCone &&
+          cameras_at_worst(evidence_, all_.surfaces, choice_.cells, best.cell, c,
+                           options_.evidence.near * largest_extent(sketch_)) <
+              options_.taper_cameras)
+        out.push_back(c);
+    return out;
   }
 
   bool borders_inferred(const Cell& cell) const {
@@ -158,6 +172,8 @@ class Search {
     if (!is_hopeless(out))
       out.margin = choose_cells(choice, {best}, options_.nodes).price - best.price;
     out.why = objection(out);
+    if (out.why.empty() && !unseen_tapers(best).empty())
+      out.why = "too few cameras see into a tapered hole to tell it from a stepped one";
     if (!out.why.empty()) return;
     out.solid = std::move(solid);
     note_edges(edge_of, &out);
