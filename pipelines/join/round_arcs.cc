@@ -279,8 +279,8 @@ void Rounder::absorb_doubles() {
 Sketch round_arcs(const Sketch& sketch, const EdgeWorld& world, const RoundOptions& options,
                   Described* described, int* rounded) {
   Rounder rounder(sketch, world, options, described);
+  rounder.round_facing_arcs();  // first: each alone could be all of it, too
   rounder.round_arcs();
-  rounder.round_facing_arcs();
   rounder.round_elliptic_arcs();
   rounder.ellipses_to_circles();
   rounder.absorb_doubles();

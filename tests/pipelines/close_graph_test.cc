@@ -159,6 +159,17 @@ TEST_F(CloseGraph, TwoArcsThatFaceEachOtherOverTwoGapsAreTheirCircle) {
   EXPECT_EQ(close_graph(part, world_of(part, 40), {}, {}).rounded, 0);
 }
 
+// Where the views show all of the circle, each arc alone could be all of it, too.
+TEST_F(CloseGraph, TwoArcsOfACircleThatViewsShowAreOneCircleNotTwo) {
+  Sketch shown, arcs;
+  shown.add_stroke(StrokeKind::kCircle, -1, -1, {{0.5, 0.5, 0.5}, {0, 0, 0.2}});
+  add_arc(&arcs, on_circle(5, 0.2), on_circle(90, 0.2), on_circle(175, 0.2));
+  add_arc(&arcs, on_circle(185, 0.2), on_circle(270, 0.2), on_circle(355, 0.2));
+  const Closed c = close_graph(arcs, world_of(shown, 40), {}, {});
+  ASSERT_EQ(c.sketch.size(), 1);
+  EXPECT_EQ(c.sketch.strokes[0].kind, StrokeKind::kCircle);
+}
+
 TEST_F(CloseGraph, APieceOfACircleDrawnTwiceIsTheCircleUnlessSomethingEndsThere) {
   for (const double off : {0.1 * px, 4 * px}) {
     const double r = 0.2 + off;
