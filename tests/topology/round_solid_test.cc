@@ -40,13 +40,16 @@ std::vector<ContourLine> touching(const Surface& surface,
 const auto everywhere = [](const Vector3d&) { return true; };
 const auto above = [](const Vector3d& p) { return p.z() > 0; };
 
-// The circles that bound the pipe of elbow() if it has straight ends of length 1 and is hollow.
-Sketch pipe_edges() {
+// The circles that bound the pipe of elbow() if it has straight ends of length 1 and is hollow; its
+// bore begins at the same end, or at the other one.
+Sketch pipe_edges(bool turned) {
   SolidMaker m;
-  for (const double radius : {0.5, 0.3}) {
-    m.circle({2, -1, 0}, Vector3d::UnitY(), radius);
-    m.circle({-1, 2, 0}, Vector3d::UnitX(), radius);
-  }
+  for (const double radius : {0.5, 0.3})
+    for (const bool first : {true, false})
+      if (first != (turned && radius < 0.5))
+        m.circle({2, -1, 0}, Vector3d::UnitY(), radius);
+      else
+        m.circle({-1, 2, 0}, Vector3d::UnitX(), radius);
   return m.solid.edges;
 }
 
@@ -117,12 +120,14 @@ TEST(FindSolid, ABentPipeHasTheRadiusOfItsContours) {
         return std::abs(std::hypot(x, y) - 2) < 0.5;
       },
       3, &evidence);
-  const SolidSearch search = find_solid(pipe_edges(), {}, evidence);
-  ASSERT_TRUE(search.solid) << search.why;
-  const SolidCheck check = write_solid_step(*search.solid, "");
-  EXPECT_TRUE(check.valid) << check.why;
-  EXPECT_EQ(search.solid->faces.size(), 8u);
-  EXPECT_NEAR(check.volume, M_PI * (0.25 - 0.09) * (M_PI + 2), 1e-3);
+  for (const bool turned : {false, true}) {
+    const SolidSearch search = find_solid(pipe_edges(turned), {}, evidence);
+    ASSERT_TRUE(search.solid) << search.why;
+    const SolidCheck check = write_solid_step(*search.solid, "");
+    EXPECT_TRUE(check.valid) << check.why;
+    EXPECT_EQ(search.solid->faces.size(), 8u);
+    EXPECT_NEAR(check.volume, M_PI * (0.25 - 0.09) * (M_PI + 2), 1e-3);
+  }
 }
 
 TEST(FindSolid, TwoCirclesOfABallAreEnough) {

@@ -167,12 +167,17 @@ class Finder {
         [=](double radius) { add_bends_about(bend, radius); }, true);
   }
 
+  bool same_axes(const Bend& bend, const Bend& other) const {
+    const auto run = [](const Vector3d& a, const Vector3d& b) { return a.cross(b).norm() <= 0.02; };
+    return (bend.corner - other.corner).norm() <= 4 * tolerance_ &&
+           ((run(bend.to_a, other.to_a) && run(bend.to_b, other.to_b)) ||
+            (run(bend.to_a, other.to_b) && run(bend.to_b, other.to_a)));
+  }
+
   // A bend, and those about the same axes: the bore of a pipe shows no contour.
   void add_bends_about(const Bend& outer, double radius) {
     for (const Bend& bend : bends_) {
-      if ((bend.corner - outer.corner).norm() > 4 * tolerance_ ||
-          bend.to_a.cross(outer.to_a).norm() > 0.02 || bend.to_b.cross(outer.to_b).norm() > 0.02)
-        continue;
+      if (!same_axes(bend, outer)) continue;
       const std::optional<RoundPatch> patch = bends(bend)(radius);
       if (!patch) continue;
       if (std::abs(bend.radius - outer.radius) > 4 * tolerance_) add(*patch, true, bonus());
