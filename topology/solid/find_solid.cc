@@ -173,7 +173,7 @@ class Search {
       out.margin = choose_cells(choice, {best}, options_.nodes).price - best.price;
     out.why = objection(out);
     if (out.why.empty() && !unseen_tapers(best).empty())
-      out.why = "too few cameras see into a tapered hole to tell it from a stepped one";
+      out.why = "too few cameras see all of a tapered face to tell it from a stepped one";
     if (!out.why.empty()) return;
     out.solid = std::move(solid);
     note_edges(edge_of, &out);
