@@ -23,7 +23,7 @@ struct SolidOptions {
   double margin = 4;        ///< [nat] by which the second-best choice must be worse
   /// Share of the rays through masks that may contradict the solid.
   double contradicted = 2e-3;
-  /// Cameras that must see a cone at every height: of steps that fewer see, half are missed.
+  /// Cameras that must see a cone at every height: edges of steps that fewer see are easily missed.
   int taper_cameras = 8;
   int many_surfaces = 150;  ///< with more candidates it is not searched more than once
   int most_surfaces = 500;  ///< with more candidates it is not searched at all
