@@ -28,9 +28,9 @@ constexpr double kCoarsePx = 0.3;  // strokes that are off by more tell nothing
 constexpr double kOffRoundPx = 1;  // standard deviation of a stroke from its round
 constexpr size_t kFewestViews = 6;
 constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
-constexpr double kWeak = 1e-3;  // information on places that no view tells
-constexpr double kWidest = 100;  // chamfer, over the narrowest
-constexpr double kOnItPx = 0.5;  // a stroke is the outline itself, in some
+constexpr double kWeak = 1e-3;          // information on places that no view tells
+constexpr double kWidest = 100;         // chamfer, over the narrowest
+constexpr double kOnItPx = 0.5;         // a stroke is the outline itself, in some
 constexpr int kFewestOnIt = 2;
 // Share of the views in which something else lies beside it: near a round hardly anything does,
 // beside an edge, or beside edges among others, something may.
