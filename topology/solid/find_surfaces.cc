@@ -10,6 +10,7 @@
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
 #include "topology/faces/find_planes.h"
+#include "topology/solid/circle_rim.h"
 #include "topology/solid/surface.h"
 
 namespace sketchsplat {
@@ -18,20 +19,9 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-// An arc or a circle as what turns about an axis.
-struct Round {
+struct Round : CircleRim {
   int stroke;
-  Vector3d centre, axis;
-  double radius;
 };
-
-std::optional<Round> round_of(const Sketch& sketch, int stroke) {
-  const StrokeKind kind = sketch.strokes[stroke].kind;
-  if (kind != StrokeKind::kCircle && kind != StrokeKind::kArc) return std::nullopt;
-  const CircleParameters circle = circle_parameters(sketch, stroke);
-  if (circle.straight) return std::nullopt;
-  return Round{stroke, circle.centre, circle.normal, circle.radius};
-}
 
 bool lies_on(const Surface& surface, const Matrix3Xd& polyline, double tolerance) {
   // The middle of a line, too: its ends may be those of a chord.
@@ -59,7 +49,8 @@ class Finder {
   Finder(const Sketch& sketch, const std::vector<Matrix3Xd>& polylines, double tolerance)
       : sketch_(sketch), polylines_(polylines), tolerance_(tolerance) {
     for (int s = 0; s < sketch.size(); ++s)
-      if (const std::optional<Round> round = round_of(sketch, s)) rounds_.push_back(*round);
+      if (const std::optional<CircleRim> rim = circle_rim(sketch, s, tolerance))
+        rounds_.push_back({*rim, s});
   }
 
   std::vector<SurfaceStrokes> find() {

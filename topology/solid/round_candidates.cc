@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
 #include "topology/solid/round_families.h"
 
@@ -36,15 +35,12 @@ class Finder {
         any_contours_(!contours.empty()),
         least_(std::max(kLeast, int(kLeastShare * double(contours.size())))) {
     for (int s = 0; s < sketch.size(); ++s) {
-      const StrokeKind kind = sketch.strokes[s].kind;
-      if (kind != StrokeKind::kCircle && kind != StrokeKind::kArc) continue;
-      const CircleParameters c = circle_parameters(sketch, s);
-      const CircleRim rim{c.centre, c.normal, c.radius};
-      if (c.straight || c.radius > extent_) continue;
+      const std::optional<CircleRim> rim = circle_rim(sketch, s, tolerance_);
+      if (!rim || rim->radius > extent_) continue;
       const auto same = std::find_if(rims_.begin(), rims_.end(),
-                                     [&](const CircleRim& r) { return alike(r, rim); });
+                                     [&](const CircleRim& r) { return alike(r, *rim); });
       if (same == rims_.end()) {
-        rims_.push_back(rim);
+        rims_.push_back(*rim);
         strokes_.push_back({s});
       } else {
         strokes_[same - rims_.begin()].push_back(s);  // an arc of the same rim

@@ -4,15 +4,10 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "topology/solid/circle_rim.h"
 #include "topology/solid/contours.h"
 
 namespace sketchsplat {
-
-/// A circle as what turns about an axis.
-struct CircleRim {
-  Eigen::Vector3d centre, axis;  ///< axis: unit
-  double radius = 0;
-};
 
 /// Spheres through a rim, of which the cap on the side of its axis: parameter [rad] is how far the
 /// centre rises over the rim, seen from it: from -pi / 2, flat, over 0, a half, to pi / 2.
