@@ -10,6 +10,7 @@
 #include "tests/topology/solids.h"
 #include "topology/brep/solid_step.h"
 #include "topology/faces/find_planes.h"
+#include "topology/solid/circle_rim.h"
 #include "topology/solid/crossing_cells.h"
 #include "topology/solid/find_solid.h"
 #include "topology/solid/round_families.h"
@@ -128,6 +129,27 @@ TEST(FindSolid, ABentPipeHasTheRadiusOfItsContours) {
     EXPECT_EQ(search.solid->faces.size(), 8u);
     EXPECT_NEAR(check.volume, M_PI * (0.25 - 0.09) * (M_PI + 2), 1e-3);
   }
+}
+
+TEST(CircleRim, IsOfCirclesAndOfEllipsesThatKeepToOne) {
+  constexpr double kTolerance = 0.01;
+  Sketch s;
+  const auto ellipse = [&](double a, double b) {
+    return s.add_stroke(StrokeKind::kEllipse, -1, -1, {{1, 2, 3}, {a, 0, 0}, {0, b, 0}});
+  };
+  const int near = ellipse(0.509, 0.491), far = ellipse(0.512, 0.488), small = ellipse(0.035, 0.03),
+            circle = test::add_circle(&s, {1, 2, 3}, {0, 0, 0.5}),
+            line = test::add_line(&s, {0, 0, 0}, {1, 0, 0}),
+            straight = test::add_arc(&s, {0, 0, 0}, {0.5, 0, 0}, {1, 0, 0});
+  for (const int stroke : {near, circle}) {
+    const std::optional<CircleRim> rim = circle_rim(s, stroke, kTolerance);
+    ASSERT_TRUE(rim);
+    EXPECT_NEAR(rim->radius, 0.5, 1e-12);
+    EXPECT_NEAR((rim->centre - Vector3d(1, 2, 3)).norm(), 0, 1e-12);
+    EXPECT_NEAR(std::abs(rim->axis.z()), 1, 1e-12);
+  }
+  for (const int stroke : {far, small, line, straight})
+    EXPECT_FALSE(circle_rim(s, stroke, kTolerance)) << stroke;
 }
 
 TEST(FindSolid, TwoCirclesOfABallAreEnoughEvenIfOneIsNearlyAnEllipse) {

@@ -14,8 +14,9 @@ struct CircleRim {
   double radius = 0;
 };
 
-/// The circle that a circle, an arc or an ellipse runs along to within the tolerance (world units);
-/// none if it is another kind of stroke, or straight.
+/// The circle of a circle, of an arc that is not straight, or of an ellipse that keeps to within
+/// the tolerance (world units) of one: its semi-axes differ by no more than twice that, and the
+/// lesser one is longer than four, lest any small ellipse be a circle. None of other strokes.
 std::optional<CircleRim> circle_rim(const Sketch& sketch, int stroke, double tolerance);
 
 }  // namespace sketchsplat
