@@ -31,6 +31,39 @@ TEST(ExrHeader, OfEveryPartCounts) {
   EXPECT_TRUE(believable(head_of(0) + kThree + kEnd + kTwoGigabytes)) << "these are pixels";
 }
 
+// The library reads these by their contents: what comes after would be read from elsewhere.
+TEST(ExrHeader, ValuesAreAsLongAsTheirTypesAre) {
+  const auto value = [](const std::string& type, const std::string& bytes) {
+    return head_of(0) + "name\0"s + type + '\0' + char(bytes.size()) + "\0\0\0"s + bytes + kEnd;
+  };
+  const std::string kChannel = "R\0"s + std::string(16, '\1');
+  EXPECT_TRUE(believable(value("chlist", kChannel + kChannel + kEnd)));
+  EXPECT_FALSE(believable(value("chlist", kChannel + kChannel)));
+  EXPECT_FALSE(believable(value("chlist", kChannel + kEnd + kEnd)));
+  EXPECT_FALSE(believable(value("chlist", kChannel.substr(0, 9))));
+  EXPECT_FALSE(believable(value("chlist", "")));
+  EXPECT_TRUE(believable(value("box2i", std::string(16, '\0'))));
+  EXPECT_FALSE(believable(value("box2i", std::string(15, '\0'))));
+  EXPECT_TRUE(believable(value("stringvector", "\2\0\0\0ab\0\0\0\0"s)));
+  EXPECT_FALSE(believable(value("stringvector", "\2\0\0\0ab\1\0\0\0"s)));
+  EXPECT_FALSE(believable(value("stringvector", "\2\0\0"s)));
+  EXPECT_TRUE(believable(value("preview", "\1\0\0\0\1\0\0\0abcd"s)));
+  EXPECT_FALSE(believable(value("preview",
+                                "\1\0\0\0\1\0\0\x40"
+                                "abcd"s)));
+  EXPECT_TRUE(believable(value("of the future", "abc")));
+}
+
+TEST(ExrHeader, ClaimsNoMorePixelsThanTheFileCanHold) {
+  const auto window = [](const std::string& corner) {
+    return head_of(0) + "dataWindow\0box2i\0\x10\0\0\0"s + std::string(8, '\0') + corner + kEnd;
+  };
+  EXPECT_TRUE(believable(window("\xff\3\0\0\xff\1\0\0"s))) << "1024 x 512";
+  EXPECT_FALSE(believable(window("\xff\3\0\0\xff\xff\1\0"s))) << "1024 x 131072";
+  EXPECT_FALSE(believable(window("\xff\xff\xff\x7f\0\0\0\0"s))) << "2^31 x 1";
+  EXPECT_TRUE(believable(window("\xff\xff\xff\xff\1\0\0\0"s))) << "none: left to the library";
+}
+
 TEST(ExrHeader, WhatEndsBeforeItOrIsNoneIsLeftToTheLibrary) {
   const std::string whole = head_of(0) + kThree + kEnd;
   for (size_t n = 0; n <= whole.size(); ++n)
