@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/io/exr_header.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <map>
 
 namespace sketchsplat {
@@ -56,17 +58,6 @@ bool is_preview(const std::string& value) {
          8 + 4 * std::uint64_t(little_endian(value, 0)) * little_endian(value, 4) == value.size();
 }
 
-// Corners of the rectangle of pixels: for its lines memory is taken when the file is opened. No
-// codec packs more than some thousand pixels into a byte.
-bool is_window(const std::string& value, std::size_t file_size) {
-  if (value.size() != 16) return false;
-  std::int64_t corner[4];
-  for (int k = 0; k < 4; ++k) corner[k] = std::int32_t(little_endian(value, 4 * k));
-  const double width = double(corner[2] - corner[0] + 1),
-               height = double(corner[3] - corner[1] + 1);
-  return width * height / 20000 <= double(file_size);
-}
-
 // Whether the library, which does not look at the size of all, takes as many bytes as it says.
 bool has_its_size(const std::string& type, const std::string& value) {
   if (type == "chlist") return are_channels(value);
@@ -76,33 +67,60 @@ bool has_its_size(const std::string& type, const std::string& value) {
   return fixed == 0 || fixed == value.size();
 }
 
+// What memory is taken for when a file is opened: lines of the window, as many as its codec packs
+// together.
+struct Claim {
+  double width = 0, height = 0;  // of the data window
+  double pixel_bytes = 4;
+  int lines = 256;
+
+  double bytes() const { return width * pixel_bytes * std::max<double>(height, lines); }
+
+  void add(const std::string& name, const std::string& value) {
+    if (name == "dataWindow" && value.size() == 16) {
+      std::int64_t corner[4];
+      for (int k = 0; k < 4; ++k) corner[k] = std::int32_t(little_endian(value, 4 * k));
+      width = std::max<double>(0, corner[2] - corner[0] + 1);
+      height = std::max<double>(0, corner[3] - corner[1] + 1);
+    }
+    // None, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB
+    constexpr int kLines[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+    if (name == "compression" && value.size() == 1 && std::uint8_t(value[0]) < std::size(kLines))
+      lines = kLines[std::uint8_t(value[0])];
+    if (name == "channels") pixel_bytes = 4 * std::max(1.0, double(value.size() / (kChannel + 2)));
+  }
+};
+
 }  // namespace
 
 // Layout: openexr.com, "OpenEXR File Layout". Magic number, version, then name, type (both end with
 // a zero byte), size and value of each attribute; a zero byte ends a header, another one the list
 // of headers.
-bool exr_sizes_are_believable(const std::string& head, std::size_t file_size) {
+bool exr_sizes_are_believable(const std::string& head, std::size_t file_size, double per_byte) {
   if (head.size() < 8 || head.compare(0, 4, "v/1\1") != 0) return true;
   const bool several = little_endian(head, 4) & kMultipart;
+  Claim claim;
   for (std::size_t at = 8, in_header = 0; at < head.size();) {
     if (head[at] == 0) {
+      if (claim.bytes() > per_byte * double(file_size)) return false;
       if (!several || in_header == 0) return true;
+      claim = {};
       in_header = 0, ++at;
       continue;
     }
-    const std::size_t at_name = at, name_end = head.find('\0', at);
+    const std::size_t name_end = head.find('\0', at);
     const std::size_t type_end =
         name_end == std::string::npos ? name_end : head.find('\0', name_end + 1);
     if (type_end == std::string::npos || type_end + 5 > head.size()) return true;
+    const std::string name = head.substr(at, name_end - at);
+    const std::string type = head.substr(name_end + 1, type_end - name_end - 1);
     const std::size_t size = little_endian(head, type_end + 1);
     at = type_end + 5;
     if (at + size > file_size) return false;
-    const std::string type = head.substr(name_end + 1, type_end - name_end - 1);
     if (at + size <= head.size()) {
       const std::string value = head.substr(at, size);
       if (!has_its_size(type, value)) return false;
-      const bool window = head.compare(at_name, name_end - at_name, "dataWindow") == 0;
-      if (window && !is_window(value, file_size)) return false;
+      claim.add(name, value);
     }
     at += size, ++in_header;
   }

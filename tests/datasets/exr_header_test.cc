@@ -54,14 +54,26 @@ TEST(ExrHeader, ValuesAreAsLongAsTheirTypesAre) {
   EXPECT_TRUE(believable(value("of the future", "abc")));
 }
 
+std::string packed(char codec) { return "compression\0compression\0\1\0\0\0"s + codec; }
+std::string window(const std::string& corner) {
+  return "dataWindow\0box2i\0\x10\0\0\0"s + std::string(8, '\0') + corner;
+}
+const std::string kWide = "\xff\xff\1\0\0\0\0\0"s;  // 131072 x 1
+
 TEST(ExrHeader, ClaimsNoMorePixelsThanTheFileCanHold) {
-  const auto window = [](const std::string& corner) {
-    return head_of(0) + "dataWindow\0box2i\0\x10\0\0\0"s + std::string(8, '\0') + corner + kEnd;
-  };
-  EXPECT_TRUE(believable(window("\xff\3\0\0\xff\1\0\0"s))) << "1024 x 512";
-  EXPECT_FALSE(believable(window("\xff\3\0\0\xff\xff\1\0"s))) << "1024 x 131072";
-  EXPECT_FALSE(believable(window("\xff\xff\xff\x7f\0\0\0\0"s))) << "2^31 x 1";
-  EXPECT_TRUE(believable(window("\xff\xff\xff\xff\1\0\0\0"s))) << "none: left to the library";
+  const std::string head = head_of(0) + packed(0);
+  EXPECT_TRUE(believable(head + window("\xff\3\0\0\xff\0\0\0"s) + kEnd)) << "1024 x 256";
+  EXPECT_FALSE(believable(head + window("\xff\3\0\0\xff\xff\0\0"s) + kEnd)) << "1024 x 65536";
+  EXPECT_FALSE(believable(head + window("\xff\xff\xff\x7f\0\0\0\0"s) + kEnd)) << "2^31 x 1";
+  EXPECT_TRUE(believable(head + window("\xff\xff\xff\xff\1\0\0\0"s) + kEnd))
+      << "none: left to the library";
+}
+
+TEST(ExrHeader, CodecsTakeMemoryForAllTheLinesThatTheyPackTogether) {
+  const char none = 0, dwab = 9;
+  EXPECT_TRUE(believable(head_of(0) + packed(none) + window(kWide) + kEnd));
+  EXPECT_FALSE(believable(head_of(0) + packed(dwab) + window(kWide) + kEnd));
+  EXPECT_FALSE(exr_sizes_are_believable(head_of(0) + packed(none) + window(kWide) + kEnd, 90, 100));
 }
 
 TEST(ExrHeader, WhatEndsBeforeItOrIsNoneIsLeftToTheLibrary) {
