@@ -7,10 +7,58 @@
 #include "topology/brep/solid_step.h"
 
 namespace sketchsplat {
+namespace {
+
+// Half a disc: a whole file within the bytes that libFuzzer gives a target.
+constexpr const char* kHalfDisc = R"(ISO-10303-21;
+HEADER;
+FILE_DESCRIPTION((''),'2;1');
+FILE_NAME('','',(''),(''),'','','');
+FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));
+ENDSEC;
+DATA;
+#1=APPLICATION_CONTEXT('');
+#2=PRODUCT_CONTEXT('',#1,'');
+#3=PRODUCT('','','',(#2));
+#4=PRODUCT_DEFINITION_FORMATION('','',#3);
+#5=PRODUCT_DEFINITION_CONTEXT('',#1,'');
+#6=PRODUCT_DEFINITION('','',#4,#5);
+#7=PRODUCT_DEFINITION_SHAPE('','',#6);
+#8=SHAPE_DEFINITION_REPRESENTATION(#7,#9);
+#9=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#10),#40);
+#10=SHELL_BASED_SURFACE_MODEL('',(#11));
+#11=OPEN_SHELL('',(#12));
+#12=ADVANCED_FACE('',(#13),#20,.T.);
+#13=FACE_BOUND('',#14,.T.);
+#14=EDGE_LOOP('',(#15,#16));
+#15=ORIENTED_EDGE('',*,*,#17,.T.);
+#16=ORIENTED_EDGE('',*,*,#18,.T.);
+#17=EDGE_CURVE('',#30,#31,#19,.T.);
+#18=EDGE_CURVE('',#31,#30,#21,.T.);
+#19=LINE('',#34,#35);
+#20=PLANE('',#22);
+#21=CIRCLE('',#22,1.);
+#22=AXIS2_PLACEMENT_3D('',#23,#24,#25);
+#23=CARTESIAN_POINT('',(0.,0.,0.));
+#24=DIRECTION('',(0.,0.,1.));
+#25=DIRECTION('',(1.,0.,0.));
+#30=VERTEX_POINT('',#34);
+#31=VERTEX_POINT('',#33);
+#33=CARTESIAN_POINT('',(1.,0.,0.));
+#34=CARTESIAN_POINT('',(-1.,0.,0.));
+#35=VECTOR('',#25,1.);
+#40=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#41))
+REPRESENTATION_CONTEXT('',''));
+#41=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));
+ENDSEC;
+END-ISO-10303-21;
+)";
+
+}  // namespace
 
 std::vector<std::string> fuzz_seeds() {
   const FuzzFolder folder;
-  std::vector<std::string> seeds;
+  std::vector<std::string> seeds = {kHalfDisc};
   for (const Solid& solid : {plate_with_hole(0.5), elbow()}) {
     write_solid_step(solid, folder.path() + "/a.step");
     seeds.push_back(bytes_of_file(folder.path() + "/a.step"));
