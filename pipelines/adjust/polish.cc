@@ -10,8 +10,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kFinalReachPx = 1;  // of a match in the last rounds, wider if the edgels scatter
-constexpr double kStopPx = 0.002;    // no sample moved farther: done
+constexpr double kStopPx = 0.002;  // no sample moved farther: done
 
 }  // namespace
 
@@ -24,7 +23,8 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     MatchOptions match;
     match.exclusive = match.exclusive_between = options.exclusive;
     const bool coarse = round < std::min(2, options.rounds / 2);
-    match.reach_px = coarse ? options.reach_px : std::max(kFinalReachPx, 4 * sigma);
+    match.reach_px =
+        coarse ? options.reach_px : std::max(options.final_reach_px, options.final_reach * sigma);
     match.max_bias = coarse ? 0 : std::max(options.bias_px, 2 * sigma);
     Observation o = observe(s, world, match, options.spacing_px);
     sigma = o.matches.sigma_px;

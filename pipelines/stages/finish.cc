@@ -17,6 +17,9 @@ namespace {
 // Views that show a stroke so wide, see WidthRates.
 constexpr const char* kByWidth[] = {"views_narrow", "views_as_wide", "views_wide", "views_wider"};
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
+// Reach of the last polish. What lies farther off is something else beside the stroke, nearly
+// always to the same side of it: a wider reach draws it there.
+constexpr double kNearPx = 0.3, kNear = 3;  // and in standard deviations
 constexpr double kProbable = 0.5;  // of an edge that something else than its edgels tells of
 
 // What strokes are called when only some of them stay; -1 for the others.
@@ -164,6 +167,8 @@ WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
 PolishOptions last_polish(const ReconstructOptions& options) {
   PolishOptions polish = options.polish;
   polish.smooth_sigma_deg *= kSmoother;
+  polish.final_reach_px = kNearPx;
+  polish.final_reach = kNear;
   return polish;
 }
 

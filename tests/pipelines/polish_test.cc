@@ -84,6 +84,26 @@ TEST(Polish, AStrokeThatNobodySeesStaysWhereItIs) {
   EXPECT_LT(farthest(back, 0, {polyline_of(truth, 0)}, 0.03), 0.02 * w.footprint);
 }
 
+// As beside an outline of a round that leaves an edge, which every fourth view shows.
+TEST(Polish, EdgelsOfSomethingElseHalfAPixelBesideDrawAStrokeLessIfItReachesLess) {
+  Sketch truth;
+  add_line(&truth, {0.1, 0.45, 0.5}, {0.9, 0.55, 0.5});
+  EdgeWorld w = world_of(truth);
+  std::vector<EdgelMap> maps = w.maps;
+  for (size_t v = 0; v < maps.size(); v += 4) {
+    for (size_t i = 0; i < maps[v].edgels.size() / 2; ++i) maps[v].edgels[i].y += 0.5f;
+    build_lookup(&maps[v], 4.0);
+  }
+  const EdgeWorld beside = make_edge_world(w.views, maps);
+  PolishOptions wide, near;
+  near.final_reach_px = 0.3;
+  near.final_reach = 3;
+  const std::vector<Polyline> line = {polyline_of(truth, 0)};
+  const double off = farthest(polish(truth, beside, wide), 0, line, 0.03);
+  EXPECT_GT(off, 0.05 * w.footprint);
+  EXPECT_LT(farthest(polish(truth, beside, near), 0, line, 0.03), 0.5 * off);
+}
+
 TEST(Polish, ScalesWithTheUnitOfTheScene) {
   const EdgeWorld w = world_of(four_kinds());
   const Sketch expected = polish(bent(four_kinds(), w.footprint), w, {});
