@@ -83,7 +83,8 @@ class Relations:
                 ends.setdefault(self.profile.point_of((i, position)), []).append((i, position))
         for refs in ends.values():
             if len(refs) == 2 and {self.profile.elements[r[0]].kind for r in refs} != {"line"}:
-                found.append(Constraint("tangent", tuple(refs)))
+                stated = self._is_stated("tangent", refs[0][0], refs[1][0])
+                found.append(Constraint("tangent", tuple(refs), stated=stated))
         return [c for c in found if c.kind == "coincident" or self.is_plausible(c)]
 
     def _directions(self):

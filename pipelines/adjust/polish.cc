@@ -30,6 +30,7 @@ Sketch polish(const Sketch& sketch, const EdgeWorld& world, const PolishOptions&
     sigma = o.matches.sigma_px;
     RefineSketchOptions refine;
     refine.smooth_angle = options.smooth_deg * M_PI / 180;
+    refine.tangent = options.tangent;
     refine.smooth_weight = std::pow(sigma / (options.smooth_sigma_deg * M_PI / 180), 2);
     const RefineSketchResult refined =
         refine_sketch(s, o.layout, {o.matches.information, o.matches.slope}, refine);

@@ -17,8 +17,9 @@ struct PolishOptions {
   bool exclusive = true;  ///< an edgel belongs to the stroke that lies nearest to it
   double smooth_deg = 8;  ///< [deg] joints of cubics that turn less are smooth; 0: none
   double smooth_sigma_deg =
-      0.2;            ///< [deg] standard deviation of what is left between their tangents
-  Deadline deadline;  ///< no second round after it
+      0.2;                    ///< [deg] standard deviation of what is left between their tangents
+  std::vector<char> tangent;  ///< of nodes: is it a tangent joint that is held? Empty: none is
+  Deadline deadline;          ///< no second round after it
 };
 
 /// Moves the strokes onto the edgels of all views: match, then least squares with a robust weight

@@ -264,13 +264,14 @@ void RegularityFinder::find(int stages) {
   if (stages > 3) find_axes();
   if (stages > 4) find_radii();
   if (stages > 5) find_mirrors();
+  if (stages > 6) find_tangents();
 }
 
 Relations RegularityFinder::kept() const {
   Relations out = weigher_.relations();
   out.list.clear();
   for (const Relation& r : weigher_.relations().list)
-    if (weigher_.is_used(r.shared)) out.list.push_back(r);
+    if (r.shared < 0 || weigher_.is_used(r.shared)) out.list.push_back(r);
   return out;
 }
 
@@ -317,6 +318,7 @@ std::vector<Regularity> RegularityFinder::regularities() const {
           held_[q]);
     }
   }
+  for (const std::set<int>& pair : tangents_) add(RelationKind::kTangent, pair);
   for (const Relation& r : weigher_.relations().list) {
     if (r.kind != RelationKind::kPerpendicular) continue;
     std::set<int> strokes;

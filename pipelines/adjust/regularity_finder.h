@@ -27,8 +27,8 @@ class RegularityFinder {
 
   const RelationWeigher& weigher() const { return weigher_; }
 
-  /// Takes relations that pay: of directions; right angles; planes; axes; radii; mirrors. The first
-  /// `stages` of these six.
+  /// Takes relations that pay: of directions; right angles; planes; axes; radii; mirrors;
+  /// tangents. The first `stages` of these seven.
   void find(int stages);
   Relations kept() const;
   std::vector<Regularity> regularities() const;
@@ -53,6 +53,7 @@ class RegularityFinder {
   void find_axes();
   void find_radii();
   void find_mirrors();
+  void find_tangents();
   RegularityCandidate along(int stroke);
   void group(std::vector<RegularityCandidate> candidates, const SharedQuantity& blank);
   void hold(int shared, const Relation& relation);
@@ -70,7 +71,8 @@ class RegularityFinder {
   RelationWeigher weigher_;
   std::vector<std::set<int>> held_;  // by shared quantity: points of planes, strokes of the others
   std::vector<Direction> directions_;
-  std::set<int> mirrors_;  // shared planes that mirror
+  std::set<int> mirrors_;                // shared planes that mirror
+  std::vector<std::set<int>> tangents_;  // pairs of strokes
 };
 
 }  // namespace sketchsplat

@@ -19,7 +19,7 @@ Regularized regularize(const Sketch& sketch, const StrokeObservation& seen, doub
   const RefineSketchResult free = refine_sketch(sketch, seen.layout, q, options.refine);
   // It was decided on a linear view. If the whole is no shorter, relations of conics are to blame,
   // most likely, which bend most: the last ones.
-  for (int stages = 6; stages > 0; --stages) {
+  for (int stages = 7; stages > 0; --stages) {
     RegularityFinder finder(sketch, all, footprint, options);
     if (!finder.weigher().ok()) return out;
     finder.find(stages);

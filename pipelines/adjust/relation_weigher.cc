@@ -169,7 +169,7 @@ void RelationWeigher::take(const std::vector<Relation>& relations, const Relatio
   for (const Relation& r : relations) {
     relations_.list.push_back(r);
     if (!pays) continue;
-    used_[r.shared] = true;
+    if (r.shared >= 0) used_[r.shared] = true;
     if (r.other >= 0) used_[r.other] = true;
   }
   if (pays) gain_ += trial.gain;

@@ -65,8 +65,9 @@ class RelationWeigher {
   Joint joint(const std::vector<Relation>& relations) const;
 
   /// Sets the relations' sigmas, and asks what they cost and save. `naming`: log of the number of
-  /// candidates among which they were found. What a relation tells, log(range / deviation), must
-  /// exceed the price of a parameter, lest chance agreement pays.
+  /// candidates among which they were found, less the log of the odds of what is expected. What a
+  /// relation tells, log(range / deviation), must exceed the price of a parameter, lest chance
+  /// agreement pays.
   RelationTrial weigh(std::vector<Relation>* relations, double range_px, double naming);
   /// `pays`: something is shared from now on; else the relations only define a quantity.
   void take(const std::vector<Relation>& relations, const RelationTrial& trial, bool pays);

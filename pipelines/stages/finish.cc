@@ -5,6 +5,7 @@
 #include <set>
 
 #include "datasets/types/errors.h"
+#include "pipelines/adjust/polish_tangent.h"
 #include "pipelines/stages/stages.h"
 #include "pipelines/survey/confidence.h"
 #include "pipelines/survey/observe.h"
@@ -197,7 +198,7 @@ FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
   out.snap.asked = options.snap != "none";
   if (options.final_polish) {
     Observation last;
-    out.sketch = polish(sketch, world, last_polish(options), &last);
+    out.sketch = polish_tangent(sketch, world, last_polish(options), prices(options), &last);
     if (last.layout.size() > 0 && !options.deadline.passed()) {
       const StrokeObservation seen = with_strokes(std::move(last), world, 1);
       Regularized regular;

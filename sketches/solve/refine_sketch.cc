@@ -114,15 +114,37 @@ void add_smooth_joints(const RefineSketchOptions& options, Sketch* s, ceres::Pro
   }
 }
 
+std::vector<double*> blocks_of(const Relation& relation, Relations* relations, Sketch* s) {
+  const int nodes = int(s->nodes.cols()), shared = nodes + int(s->handles.cols());
+  std::vector<double*> blocks;
+  for (const int b : relation_blocks(*s, *relations, relation))
+    blocks.push_back(b < nodes    ? s->nodes.col(b).data()
+                     : b < shared ? s->handles.col(b - nodes).data()
+                                  : relations->shared[b - shared].value.data());
+  return blocks;
+}
+
+constexpr double kMostHeldTurn = 0.8;  // [rad] of a joint that is to become tangent
+
+void add_tangent_joints(const RefineSketchOptions& options, Sketch* s, ceres::Problem* problem) {
+  const double root_weight = std::sqrt(options.smooth_weight);
+  Relations none;
+  for (Relation& joint : tangent_relations(*s, kMostHeldTurn)) {
+    if (!options.tangent[joint.point]) continue;
+    const std::vector<double*> blocks = blocks_of(joint, &none, s);
+    // Not where no edgel says anything.
+    if (!std::all_of(blocks.begin(), blocks.end(),
+                     [&](double* b) { return problem->HasParameterBlock(b); }))
+      continue;
+    joint.scale = root_weight;
+    problem->AddResidualBlock(make_relation_cost(*s, none, joint), nullptr, blocks);
+  }
+}
+
 // Their directions stay unit vectors; a point on an axis stays where it is along it.
 void add_relations(Relations* relations, double hold, Sketch* s, ceres::Problem* problem) {
-  const int nodes = int(s->nodes.cols()), shared = nodes + int(s->handles.cols());
   for (const Relation& relation : relations->list) {
-    std::vector<double*> blocks;
-    for (int b : relation_blocks(*s, *relations, relation))
-      blocks.push_back(b < nodes    ? s->nodes.col(b).data()
-                       : b < shared ? s->handles.col(b - nodes).data()
-                                    : relations->shared[b - shared].value.data());
+    const std::vector<double*> blocks = blocks_of(relation, relations, s);
     problem->AddResidualBlock(make_relation_cost(*s, *relations, relation), nullptr, blocks);
   }
   for (SharedQuantity& q : relations->shared) {
@@ -178,6 +200,7 @@ RefineSketchResult refine_sketch(const Sketch& sketch, const SampleLayout& layou
   if (problem.NumResidualBlocks() == 0) return result;
   const double hold = std::sqrt(options.stiffness * trace / problem.NumResidualBlocks());
   if (options.smooth_angle > 0) add_smooth_joints(options, &s, &problem);
+  if (!options.tangent.empty()) add_tangent_joints(options, &s, &problem);
   // By index: the solver itself lists blocks by address, which is another every time.
   for (Eigen::Matrix3Xd* points : {&s.nodes, &s.handles})
     for (int i = 0; i < points->cols(); ++i) {

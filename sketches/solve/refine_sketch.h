@@ -21,7 +21,10 @@ struct RefineSketchOptions {
   /// Joints that turn by at most this are smooth: two cubics, or a cubic and a line, and no other
   /// stroke at their node [rad]. 0: none.
   double smooth_angle = 0;
-  double smooth_weight = 0;  ///< [cost / rad^2] that holds the tangents of a smooth joint together
+  /// Of nodes: is the joint of an arc with an arc or a line there (find_tangent_joints) held
+  /// tangent? Empty: none is.
+  std::vector<char> tangent;
+  double smooth_weight = 0;  ///< [cost / rad^2] that holds the tangents of such joints together
 };
 
 struct RefineSketchResult {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "sketches/curve/curve.h"
+#include "sketches/curve/tangent_joint.h"
 #include "sketches/solve/relation_cost.h"
 
 namespace sketchsplat {
@@ -51,13 +52,15 @@ Vec3<T> direction_of(StrokeKind kind, T const* const* p) {
 struct RelationResidual {
   Relation relation;
   StrokeKind kind = StrokeKind::kLine;
-  int own = 0;  // blocks of the stroke or the point
+  int own = 0;                        // blocks of the stroke or the point
+  bool at_end = false, arcs = false;  // tangent: of the first arc; is the other one an arc, too?
   Eigen::Vector3d origin;
   double factor = 1;  // on the residuals
 
   template <typename T>
   bool operator()(T const* const* p, T* r) const {
     const T scale(relation.scale * factor);
+    if (relation.kind == RelationKind::kTangent) return tangent<T>(p, scale, r);
     const Vec3<T> first = Block<T>(p[own]);
     switch (relation.kind) {
       case RelationKind::kParallel: {
@@ -100,6 +103,8 @@ struct RelationResidual {
         r[2] = scale * (n.dot(middle) - p[own + 1][0]);
         return true;
       }
+      case RelationKind::kTangent:
+        break;
       case RelationKind::kApart: {
         const T gap = own > 0 ? (Vec3<T>(Block<T>(p[1])) - Vec3<T>(Block<T>(p[0])))
                                     .cross(first.normalized())
@@ -111,11 +116,30 @@ struct RelationResidual {
     }
     return false;
   }
+
+  // The unit tangents of both strokes, away from their node, add up to nothing.
+  template <typename T>
+  bool tangent(T const* const* p, const T& scale, T* r) const {
+    const Block<T> node(p[at_end ? 2 : 0]), far(p[at_end ? 0 : 2]), other(p[arcs ? 4 : 3]);
+    const Vec3<T> u = arc_tangent<T>(node, Block<T>(p[1]), far);
+    const Vec3<T> v = arcs ? arc_tangent<T>(node, Block<T>(p[3]), other) : Vec3<T>(other - node);
+    Eigen::Map<Eigen::Matrix<T, 2, 1>> out(r);
+    out = relation.across.cast<T>() * (u.normalized() + v.normalized()) * scale;
+    return true;
+  }
 };
 
 int num_residuals(RelationKind kind) {
-  if (kind == RelationKind::kSymmetric) return 3;
-  return kind == RelationKind::kParallel || kind == RelationKind::kCoaxial ? 2 : 1;
+  switch (kind) {
+    case RelationKind::kSymmetric:
+      return 3;
+    case RelationKind::kParallel:
+    case RelationKind::kCoaxial:
+    case RelationKind::kTangent:
+      return 2;
+    default:
+      return 1;
+  }
 }
 
 using Cost = ceres::DynamicAutoDiffCostFunction<RelationResidual, 12>;
@@ -130,6 +154,9 @@ Cost* make_cost(const Sketch& sketch, const Relations& relations, const Relation
     const Stroke& stroke = sketch.strokes[relation.stroke];
     residual->kind = stroke.kind;
     residual->own = num_handles(stroke.kind) + (is_closed(stroke.kind) ? 0 : 2);
+    residual->at_end = stroke.end == relation.point;
+    residual->arcs =
+        relation.partner >= 0 && sketch.strokes[relation.partner].kind == StrokeKind::kArc;
   } else {
     residual->own = (relation.point >= 0) + (relation.twin >= 0);
   }
@@ -144,7 +171,7 @@ Cost* make_cost(const Sketch& sketch, const Relations& relations, const Relation
 
 const char* relation_name(RelationKind kind) {
   constexpr const char* kNames[] = {"parallel",     "perpendicular", "coplanar", "coaxial",
-                                    "equal_radius", "symmetric",     "apart"};
+                                    "equal_radius", "symmetric",     "tangent",  "apart"};
   return kNames[int(kind)];
 }
 
@@ -161,6 +188,12 @@ std::vector<int> relation_blocks(const Sketch& sketch, const Relations& relation
     blocks.push_back(relation.point);
     if (relation.twin >= 0) blocks.push_back(relation.twin);
   }
+  if (relation.partner >= 0) {
+    const Stroke& s = sketch.strokes[relation.partner];
+    if (s.kind == StrokeKind::kArc) blocks.push_back(nodes + s.handle);
+    blocks.push_back(s.begin == relation.point ? s.end : s.begin);
+  }
+  if (relation.shared < 0) return blocks;
   const int direction = relations.shared[relation.shared].direction;
   if (direction >= 0) blocks.push_back(shared + direction);
   blocks.push_back(shared + relation.shared);
@@ -193,6 +226,27 @@ RelationRows linearize(const Sketch& sketch, const Relations& relations, const R
 ceres::CostFunction* make_relation_cost(const Sketch& sketch, const Relations& relations,
                                         const Relation& relation) {
   return make_cost(sketch, relations, relation, 1 / relation.sigma);
+}
+
+std::vector<Relation> tangent_relations(const Sketch& sketch, double angle) {
+  std::vector<Relation> out;
+  for (const TangentJoint& joint : find_tangent_joints(sketch, angle)) {
+    const Stroke& arc = sketch.strokes[joint.arc];
+    const int far = arc.begin == joint.node ? arc.end : arc.begin;
+    const Eigen::Vector3d along =
+        arc_tangent<double>(sketch.nodes.col(joint.node), sketch.handles.col(arc.handle),
+                            sketch.nodes.col(far))
+            .normalized();
+    const Eigen::Vector3d normal = stroke_direction(sketch, joint.arc);
+    Relation r;
+    r.kind = RelationKind::kTangent;
+    r.stroke = joint.arc;
+    r.partner = joint.other;
+    r.point = joint.node;
+    r.across << normal.cross(along).transpose(), normal.transpose();
+    out.push_back(r);
+  }
+  return out;
 }
 
 Eigen::Vector3d stroke_direction(const Sketch& sketch, int stroke) {

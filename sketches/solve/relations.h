@@ -29,6 +29,8 @@ struct SharedQuantity {
 ///   coaxial        the centre of an arc, circle or ellipse on a shared axis      2
 ///   equal radius   of an arc or a circle                                         1
 ///   symmetric      two points that mirror one another in a shared plane          3
+///   tangent        an arc, and a line or an arc that goes on from it: nothing    2
+///                  is shared
 ///   apart          two planes of one direction, or two points across a           1
 ///                  direction (of two lines along it), at a given distance
 enum class RelationKind {
@@ -38,25 +40,28 @@ enum class RelationKind {
   kCoaxial,
   kEqualRadius,
   kSymmetric,
+  kTangent,
   kApart
 };
-constexpr int kRelationKinds = 6;  ///< that are found in sketches: all but the last
+constexpr int kRelationKinds = 7;  ///< that are found in sketches: all but the last
 const char* relation_name(RelationKind kind);
 
 struct Relation {
   RelationKind kind = RelationKind::kParallel;
-  int shared = -1;  ///< index of the quantity
+  int shared = -1;  ///< index of the quantity; tangent: none
   int other = -1;   ///< perpendicular, apart: the second direction or plane
-  int stroke = -1;  ///< parallel, coaxial, equal radius
-  int point = -1;   ///< coplanar, symmetric, apart: a node, or the number of nodes plus a handle
-  int twin = -1;    ///< symmetric, apart: the other point
-  /// Parallel, coaxial, symmetric: unit vectors across the direction, in which residuals are
-  /// stated.
+  int stroke = -1;  ///< parallel, coaxial, equal radius, tangent
+  /// Coplanar, symmetric, apart: a node, or the number of nodes plus a handle; tangent: the node.
+  int point = -1;
+  int twin = -1;  ///< symmetric, apart: the other point
+  /// Parallel, coaxial, symmetric, tangent: unit vectors across the direction, in which residuals
+  /// are stated.
   Eigen::Matrix<double, 2, 3> across = Eigen::Matrix<double, 2, 3>::Zero();
   double sign = 1;   ///< parallel: -1 if the stroke runs against the direction
   double scale = 1;  ///< [px per unit of the residual], the unit being a radian or a world length
   double sigma = 1;  ///< [px] standard deviation at which it is imposed
   double distance = 0;  ///< apart: world units
+  int partner = -1;     ///< tangent: the other stroke
 };
 
 struct Relations {
@@ -65,7 +70,8 @@ struct Relations {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the planes' offsets
 };
 
-/// Strokes that keep to one shared quantity, or to two directions with a right angle between them.
+/// Strokes that keep to one shared quantity, to two directions with a right angle between them, or
+/// that are tangent where they meet.
 struct Regularity {
   RelationKind kind = RelationKind::kParallel;
   std::vector<int> strokes;  ///< ascending
@@ -83,6 +89,9 @@ struct RelationRows {
   Eigen::MatrixXd jacobian;  ///< R x 3 B
 };
 RelationRows linearize(const Sketch& sketch, const Relations& relations, const Relation& relation);
+
+/// Of all joints that may be tangent (find_tangent_joints), with scale and sigma 1 [rad].
+std::vector<Relation> tangent_relations(const Sketch& sketch, double angle);
 
 /// Direction of a line, or unit normal of a plane conic; zero if the stroke has none.
 Eigen::Vector3d stroke_direction(const Sketch& sketch, int stroke);

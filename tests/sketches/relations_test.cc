@@ -79,6 +79,20 @@ TEST(Relations, HoldOnAnExactCylinder) {
 
 TEST(Relations, DerivativesAreThoseOfTheResiduals) {
   Cylinder c = cylinder();
+  for (const double turn : {0.1, 1.1}) {  // a line and an arc, two arcs, that nearly go on
+    const int first = c.sketch.size(), a = c.sketch.add_node({2, 0, 0}),
+              b = c.sketch.add_node({3, 0, 0}),
+              far = c.sketch.add_node({3 + std::cos(turn), std::sin(turn), 0.1});
+    if (turn < 1)
+      c.sketch.add_stroke(StrokeKind::kLine, a, b, {});
+    else
+      c.sketch.add_stroke(StrokeKind::kArc, a, b, {Vector3d(2.5, 0.2, 0)});
+    c.sketch.add_stroke(StrokeKind::kArc, far, b, {Vector3d(3.5, turn < 1 ? 0 : 0.2, 0)});
+    Relation r{RelationKind::kTangent, -1, -1, first + 1, b, -1};
+    r.partner = first;
+    r.across << 0.1, 0.9, 0.2, 0, 0.1, 1;
+    c.relations.list.push_back(r);
+  }
   c.sketch.handles.array() += 0.01 * (c.sketch.handles.array() * 37).sin();  // off, a little
   for (const Relation& r : c.relations.list) {
     const RelationRows rows = linearize(c.sketch, c.relations, r);
