@@ -55,7 +55,7 @@ bool are_texts(const std::string& value) {
 // Width, height and four bytes a pixel.
 bool is_preview(const std::string& value) {
   return value.size() >= 8 &&
-         8 + 4 * std::uint64_t(little_endian(value, 0)) * little_endian(value, 4) == value.size();
+         8 + 4.0 * little_endian(value, 0) * little_endian(value, 4) == double(value.size());
 }
 
 // Whether the library, which does not look at the size of all, takes as many bytes as it says.

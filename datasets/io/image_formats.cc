@@ -101,7 +101,7 @@ std::unique_ptr<OIIO::ImageInput> open_image(const char* path, OIIO::ImageSpec* 
                                              std::string* found) {
   const std::string format = format_of(path);
   if (format == "openexr" && !exr_is_believable(path)) {
-    *found = "a header that claims more bytes than the file has";
+    *found = "a header that claims more than the file can hold";
     return nullptr;
   }
   OIIO::ImageSpec config;

@@ -51,6 +51,7 @@ TEST(ExrHeader, ValuesAreAsLongAsTheirTypesAre) {
   EXPECT_FALSE(believable(value("preview",
                                 "\1\0\0\0\1\0\0\x40"
                                 "abcd"s)));
+  EXPECT_FALSE(believable(value("preview", "\0\0\0\x80\0\0\0\x80"s))) << "2^64 bytes";
   EXPECT_TRUE(believable(value("of the future", "abc")));
 }
 
