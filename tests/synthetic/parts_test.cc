@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <set>
 
 #include "datasets/synthetic/cad/truth.h"
 #include "datasets/types/errors.h"
+#include "sketches/curve/tangent_joint.h"
 
 namespace sketchsplat {
 namespace {
@@ -99,6 +101,20 @@ TEST(Parts, WhatSeedsDrawHasNoEdgeTooShortToMatter) {
         EXPECT_GT(curve.dihedral_deg, 10) << name << " " << seed;
       }
     }
+}
+
+// So arcs that nearly go on from lines or arcs are taken to do so (kTangentLogOdds).
+TEST(Parts, JointsOfArcsAreTangentOrTurnByMuch) {
+  size_t tangent = 0;
+  for (const std::string& name : part_names()) {
+    const Sketch truth = truth_of(name, 1).sketch;
+    const size_t exact = find_tangent_joints(truth, 0.1 * M_PI / 180).size();
+    EXPECT_EQ(find_tangent_joints(truth, 20 * M_PI / 180).size(), exact) << name;
+    tangent += exact;
+  }
+  EXPECT_GT(tangent, 100u);
+  RecordProperty("tangent", std::to_string(tangent));
+  std::printf("%zu joints of arcs are tangent, and none turns by 0.1 to 20 degrees\n", tangent);
 }
 
 TEST(Parts, GapIsTheDistanceOfTheRibsInLongestSides) {
