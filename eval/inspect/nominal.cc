@@ -23,14 +23,6 @@ constexpr double kPlane = 5e-4;     // [extents] flatness of a face
 
 double cosine(double degrees) { return std::cos(degrees * M_PI / 180); }
 
-// Unit tangent at a node that the stroke ends in, out of the node.
-Vector3d tangent_out_of(const Sketch& sketch, int stroke, int node) {
-  Vector3d p, d;
-  const bool at_begin = sketch.strokes[stroke].begin == node;
-  evaluate_stroke(sketch, stroke, at_begin ? 0 : 1, &p, &d);
-  return (at_begin ? d : Vector3d(-d)).stableNormalized();
-}
-
 struct Conic {
   Vector3d centre, normal;
   double size = 0;  // radius, or length of the larger semi-axis
@@ -53,7 +45,7 @@ bool conic_of(const Sketch& sketch, int s, Conic* out) {
 // Does one of two strokes that meet in a node, and nothing else there, go on as the other?
 bool continues(const Sketch& sketch, int a, int b, int node, double same) {
   if (sketch.strokes[a].kind != sketch.strokes[b].kind) return false;
-  if (tangent_out_of(sketch, a, node).dot(tangent_out_of(sketch, b, node)) > -cosine(kSmoothDeg))
+  if (tangent_out(sketch, a, node).dot(tangent_out(sketch, b, node)) > -cosine(kSmoothDeg))
     return false;
   Conic ca, cb;
   const bool is_a = conic_of(sketch, a, &ca), is_b = conic_of(sketch, b, &cb);

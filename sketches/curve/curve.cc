@@ -74,6 +74,12 @@ void evaluate_stroke(const Sketch& sketch, int stroke, double t, Eigen::Vector3d
   const ControlPoints c = control_points(sketch, stroke);
   evaluate_curve<double>(sketch.strokes[stroke].kind, c.p.data(), t, position, derivative);
 }
+Eigen::Vector3d tangent_out(const Sketch& sketch, int stroke, int node) {
+  Eigen::Vector3d p, d;
+  const bool at_begin = sketch.strokes[stroke].begin == node;
+  evaluate_stroke(sketch, stroke, at_begin ? 0 : 1, &p, &d);
+  return (at_begin ? d : Eigen::Vector3d(-d)).stableNormalized();
+}
 
 double stroke_length(const Sketch& sketch, int stroke) {
   if (has_constant_speed(sketch.strokes[stroke].kind)) return speed(sketch, stroke, 0.5);

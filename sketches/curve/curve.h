@@ -192,6 +192,9 @@ double stroke_length(const Sketch& sketch, int stroke);
 /// Point and derivative of a stroke at t in [0, 1].
 void evaluate_stroke(const Sketch& sketch, int stroke, double t, Eigen::Vector3d* position,
                      Eigen::Vector3d* derivative);
+/// Unit tangent of an open stroke in a node that it ends in, into the stroke; zero where the curve
+/// stands still.
+Eigen::Vector3d tangent_out(const Sketch& sketch, int stroke, int node);
 
 /// The piece of an open curve between two parameters (which may lie outside [0, 1]: lines, arcs and
 /// cubics go on beyond their ends), as control points of the same kind.

@@ -8,21 +8,18 @@
 namespace sketchsplat {
 namespace {
 
-int far_end(const Stroke& s, int node) { return s.begin == node ? s.end : s.begin; }
-
 // Unit vectors of a line or an arc in its node.
 struct Way {
-  Eigen::Vector3d along;                             // into it
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of an arc's plane
+  Eigen::Vector3d along;   // into it
+  Eigen::Vector3d normal;  // of an arc's plane; of a line zero
 };
 
 Way way_of(const Sketch& sketch, int stroke, int node) {
   const Stroke& s = sketch.strokes[stroke];
-  const Eigen::Vector3d at = sketch.nodes.col(node), far = sketch.nodes.col(far_end(s, node));
-  if (s.kind == StrokeKind::kLine) return {(far - at).normalized()};
-  const Eigen::Vector3d along =
-      arc_tangent<double>(at, sketch.handles.col(s.handle), far).normalized();
-  return {along, along.cross(far - at).normalized()};
+  const Eigen::Vector3d along = tangent_out(sketch, stroke, node);
+  if (s.kind == StrokeKind::kLine) return {along, Eigen::Vector3d::Zero()};
+  const Eigen::Vector3d chord = sketch.nodes.col(other_end(s, node)) - sketch.nodes.col(node);
+  return {along, along.cross(chord).normalized()};
 }
 
 // Does b go on from a, and both in one plane as far as it takes to say so?
@@ -48,7 +45,7 @@ std::vector<TangentJoint> find_tangent_joints(const Sketch& sketch, double angle
     int a = ends[n][0], b = ends[n][1];
     if (!is_arc(a)) std::swap(a, b);
     if (!is_arc(a) || !(is_arc(b) || sketch.strokes[b].kind == StrokeKind::kLine)) continue;
-    const int far_a = far_end(sketch.strokes[a], n), far_b = far_end(sketch.strokes[b], n);
+    const int far_a = other_end(sketch.strokes[a], n), far_b = other_end(sketch.strokes[b], n);
     if (far_a == far_b || far_a == n || far_b == n) continue;
     if (go_on(way_of(sketch, a, n), way_of(sketch, b, n), angle)) joints.push_back({n, a, b});
   }

@@ -47,6 +47,11 @@ struct Stroke {
       -1;  ///< first of num_handles(kind) consecutive columns of Sketch::handles; -1 if none
 };
 
+/// Of an open stroke that ends in this node.
+inline int other_end(const Stroke& stroke, int node) {
+  return stroke.begin == node ? stroke.end : stroke.begin;
+}
+
 /// What the images say about a stroke. Filled by the pipeline; zeros if nobody looked.
 struct Evidence {
   double opacity = 1.0;   ///< share of its visible length that lies on edges, in [0, 1]

@@ -100,8 +100,7 @@ std::vector<std::vector<int>> chains(const Sketch& sketch, const std::vector<boo
       if (done[stroke]) return;
       done[stroke] = true;
       chain->push_back(stroke);
-      const Stroke& s = sketch.strokes[stroke];
-      node = s.begin == node ? s.end : s.begin;
+      node = other_end(sketch.strokes[stroke], node);
     }
   };
   for (int i = 0; i < sketch.size(); ++i) {

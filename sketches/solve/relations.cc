@@ -191,7 +191,7 @@ std::vector<int> relation_blocks(const Sketch& sketch, const Relations& relation
   if (relation.partner >= 0) {
     const Stroke& s = sketch.strokes[relation.partner];
     if (s.kind == StrokeKind::kArc) blocks.push_back(nodes + s.handle);
-    blocks.push_back(s.begin == relation.point ? s.end : s.begin);
+    blocks.push_back(other_end(s, relation.point));
   }
   if (relation.shared < 0) return blocks;
   const int direction = relations.shared[relation.shared].direction;
@@ -231,12 +231,7 @@ ceres::CostFunction* make_relation_cost(const Sketch& sketch, const Relations& r
 std::vector<Relation> tangent_relations(const Sketch& sketch, double angle) {
   std::vector<Relation> out;
   for (const TangentJoint& joint : find_tangent_joints(sketch, angle)) {
-    const Stroke& arc = sketch.strokes[joint.arc];
-    const int far = arc.begin == joint.node ? arc.end : arc.begin;
-    const Eigen::Vector3d along =
-        arc_tangent<double>(sketch.nodes.col(joint.node), sketch.handles.col(arc.handle),
-                            sketch.nodes.col(far))
-            .normalized();
+    const Eigen::Vector3d along = tangent_out(sketch, joint.arc, joint.node);
     const Eigen::Vector3d normal = stroke_direction(sketch, joint.arc);
     Relation r;
     r.kind = RelationKind::kTangent;

@@ -71,7 +71,7 @@ void weld(const LooseEnd& end, double tolerance, Sketch* sketch) {
   const Eigen::Vector3d place = sketch->nodes.col(end.node);
   Stroke& stroke = sketch->strokes[end.stroke];
   int& own = stroke.begin == end.node ? stroke.begin : stroke.end;
-  const int far = stroke.begin == end.node ? stroke.end : stroke.begin;
+  const int far = other_end(stroke, end.node);
   for (const Stroke& s : sketch->strokes)
     for (const int node : {s.begin, s.end})
       if (node >= 0 && node != end.node && node != far &&

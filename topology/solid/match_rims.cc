@@ -33,13 +33,6 @@ struct Chain {
   Vector3d centre, normal;
 };
 
-Vector3d tangent_out(const Sketch& sketch, int stroke, int node) {
-  Vector3d p, d;
-  const bool begins = sketch.strokes[stroke].begin == node;
-  evaluate_stroke(sketch, stroke, begins ? 0 : 1, &p, &d);
-  return (begins ? d : Vector3d(-d)).normalized();
-}
-
 class Matcher {
  public:
   Matcher(const Sketch& sketch, double tolerance)
@@ -99,14 +92,14 @@ class Matcher {
   void follow(int start, std::vector<bool>* done, Chain* chain) const {
     int stroke = start, node = sketch_.strokes[start].begin;
     for (int back = next(stroke, node); back >= 0 && back != start; back = next(stroke, node)) {
-      node = other_end(back, node);
+      node = other_end(sketch_.strokes[back], node);
       stroke = back;
     }
     chain->nodes = {node};
     while (stroke >= 0 && !(*done)[stroke]) {
       (*done)[stroke] = true;
       chain->strokes.push_back({stroke, sketch_.strokes[stroke].begin == node});
-      node = other_end(stroke, node);
+      node = other_end(sketch_.strokes[stroke], node);
       chain->nodes.push_back(node);
       stroke = next(stroke, node);
     }
@@ -115,10 +108,6 @@ class Matcher {
     const Vector3d out = tangent_out(sketch_, own, node);
     for (const int s : ends_[node])
       if (s != own && out.dot(tangent_out(sketch_, s, node)) < -kSmooth) chain->beyond.push_back(s);
-  }
-  int other_end(int stroke, int node) const {
-    const Stroke& s = sketch_.strokes[stroke];
-    return s.begin == node ? s.end : s.begin;
   }
 
   bool measure(Chain* chain) const {
@@ -227,7 +216,7 @@ class Matcher {
   void add_ruling(const Chain& a, size_t i, int other) {
     const int node = a.nodes[i];
     for (const int s : ends_[node])
-      if (other_end(s, node) == other) return;
+      if (other_end(sketch_.strokes[s], node) == other) return;
     const int own = a.strokes[i == 0 ? 0 : i - 1].stroke;
     const Vector3d out = tangent_out(sketch_, own, node);
     const bool smooth = std::any_of(ends_[node].begin(), ends_[node].end(), [&](int s) {
