@@ -1,49 +1,33 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/adjust/polish_tangent.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
+#include <vector>
 
-#include "sketches/curve/closest.h"
 #include "sketches/curve/tangent_joint.h"
+#include "topology/core/description.h"
 
 namespace sketchsplat {
 namespace {
 
-constexpr double kTurn = 20 * M_PI / 180;  // joints that turn less may be tangent
-constexpr int kTries = 3;                  // fewer joints each time
+constexpr int kTries = 3;  // fewer joints each time
 
-// Where edgels put the strokes of a sketch.
-struct Places {
-  Observation o;
-  double sigma = 1;  // world units
-  std::vector<Measured> strokes;
-};
-
-Places places_of(const Sketch& sketch, const EdgeWorld& world, const Prices& prices) {
-  Places out;
-  out.o = observe_places(sketch, world);
-  out.sigma = place_sigma_px(out.o, prices.sigma_px) * world.footprint;
-  for (int s = 0; s < sketch.size(); ++s) out.strokes.push_back(measure(out.o, s, world.footprint));
-  return out;
+// Places of the half of a stroke that lies next to a node.
+Eigen::Matrix3Xd near_node(const Sketch& drawn, int stroke, int node, const StrokePoints& points) {
+  const Eigen::Matrix3Xd& all = points[stroke];
+  const Eigen::Index half = (all.cols() + 1) / 2;
+  return drawn.strokes[stroke].begin == node ? all.leftCols(half) : all.rightCols(half);
 }
 
-// [nat] by which a sketch is off the places of the halves of two strokes that lie next to their
-// joint. A place may be on either: joints move along.
-double nats_near(const TangentJoint& joint, const Places& places, const Sketch& drawn,
+// [nat] by which a sketch is off the places of two strokes next to their joint. A place may be on
+// either: joints move along. `drawn`: what the places belong to.
+double nats_near(const TangentJoint& joint, const Described& places, const Sketch& drawn,
                  const Sketch& now) {
+  const std::vector<PlainCurve> curves = {plain_curve(now, joint.arc),
+                                          plain_curve(now, joint.other)};
   double sum = 0;
-  for (const int stroke : {joint.arc, joint.other}) {
-    const Measured& m = places.strokes[stroke];
-    const int n = int(m.placed.size());
-    const bool first_half = drawn.strokes[stroke].begin == joint.node;
-    for (int k = first_half ? 0 : n / 2; k < (first_half ? (n + 1) / 2 : n); ++k) {
-      if (!m.placed[k]) continue;
-      const double off = std::min(distance_to_stroke(now, joint.arc, m.point.col(k)).distance,
-                                  distance_to_stroke(now, joint.other, m.point.col(k)).distance);
-      sum += 0.5 * (off / places.sigma) * (off / places.sigma);
-    }
-  }
+  for (const int stroke : {joint.arc, joint.other})
+    sum += misfit(curves, near_node(drawn, stroke, joint.node, places.points), places.cost);
   return sum;
 }
 
@@ -52,9 +36,9 @@ double nats_near(const TangentJoint& joint, const Places& places, const Sketch& 
 Sketch polish_tangent(const Sketch& sketch, const EdgeWorld& world, const PolishOptions& options,
                       const Prices& prices, Observation* last) {
   const Sketch free = polish(sketch, world, options, last);
-  std::vector<TangentJoint> joints = find_tangent_joints(free, kTurn);
+  std::vector<TangentJoint> joints = find_tangent_joints(free, kMostTangentTurn);
   if (joints.empty() || options.rounds == 0) return free;
-  const Places places = places_of(free, world, prices);
+  const Described places = describe(free, world, prices);
   for (int t = 0; t < kTries && !joints.empty() && !options.deadline.passed(); ++t) {
     PolishOptions held = options;
     held.tangent.assign(free.nodes.cols(), 0);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 
 #include "pipelines/adjust/polish_tangent.h"
 #include "pipelines/adjust/regularity_finder.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
+
 void RegularityFinder::find_tangents() {
   const double price = weigher_.options().price;
   for (Relation& r : tangent_relations(sketch(), weigher_.options().tangent_angle)) {

@@ -18,8 +18,8 @@ namespace {
 // Views that show a stroke so wide, see WidthRates.
 constexpr const char* kByWidth[] = {"views_narrow", "views_as_wide", "views_wide", "views_wider"};
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
-// Reach of the last polish. What lies farther off is something else beside the stroke, nearly
-// always to the same side of it: a wider reach draws it there.
+// Reach of the last polish. What lies farther off is something else beside the stroke, to which a
+// wider reach would draw it: the outline of a round that leaves an edge, as a rule.
 constexpr double kNearPx = 0.3, kNear = 3;  // and in standard deviations
 constexpr double kProbable = 0.5;  // of an edge that something else than its edgels tells of
 

@@ -7,7 +7,7 @@
 
 #include "pipelines/adjust/regularize.h"
 #include "sketches/curve/conic.h"
-#include "sketches/curve/tangent_joint.h"
+#include "sketches/curve/curve.h"
 #include "tests/support/noisy_world.h"
 
 namespace sketchsplat {
@@ -38,10 +38,8 @@ Sketch slot(double kink_deg) {
 double turn_deg(const Sketch& s, int line, int arc) {
   const Stroke &l = s.strokes[line], &a = s.strokes[arc];
   const bool at_end = l.end == a.begin || l.end == a.end;
-  const int node = at_end ? l.end : l.begin, far = a.begin == node ? a.end : a.begin;
-  const Vector3d u = s.nodes.col(at_end ? l.begin : l.end) - s.nodes.col(node),
-                 v = arc_tangent<double>(s.nodes.col(node), s.handles.col(a.handle),
-                                         s.nodes.col(far));
+  const int node = at_end ? l.end : l.begin;
+  const Vector3d u = tangent_out(s, line, node), v = tangent_out(s, arc, node);
   return std::atan2(u.cross(v).norm(), -u.dot(v)) * 180 / M_PI;
 }
 
