@@ -15,6 +15,8 @@
 namespace sketchsplat {
 namespace {
 
+bool is_child = false;  // of run_in_child
+
 bool write_all(int fd, const std::string& bytes) {
   for (size_t at = 0; at < bytes.size();) {
     const ssize_t n = write(fd, bytes.data() + at, bytes.size() - at);
@@ -32,6 +34,18 @@ std::string read_all(int fd) {
   return text;
 }
 
+ChildBytes run_in_place(const std::function<std::string()>& work) {
+  ChildBytes out;
+  try {
+    out.bytes = work();
+  } catch (const std::bad_alloc&) {
+    out.exit_status = ChildBytes::kNoMemory;
+  } catch (...) {
+    out.exit_status = ChildBytes::kThrew;
+  }
+  return out;
+}
+
 // Without destructors, buffers and handlers of the process that it is a copy of.
 [[noreturn]] void be_child(const std::function<std::string()>& work, unsigned seconds, int out,
                            pid_t parent) {
@@ -42,18 +56,15 @@ std::string read_all(int fd) {
   const rlimit cpu = {seconds, seconds}, core = {0, 0};
   setrlimit(RLIMIT_CPU, &cpu);
   setrlimit(RLIMIT_CORE, &core);
-  try {
-    _exit(write_all(out, work()) ? ChildBytes::kDone : ChildBytes::kThrew);
-  } catch (const std::bad_alloc&) {
-    _exit(ChildBytes::kNoMemory);
-  } catch (...) {
-    _exit(ChildBytes::kThrew);
-  }
+  is_child = true;
+  const ChildBytes done = run_in_place(work);
+  _exit(write_all(out, done.bytes) ? done.exit_status : ChildBytes::kThrew);
 }
 
 }  // namespace
 
 ChildBytes run_in_child(const std::function<std::string()>& work, unsigned seconds) {
+  if (is_child) return run_in_place(work);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe can be made");
   const pid_t parent = getpid(), child = fork();

@@ -2,10 +2,12 @@
 #include "datasets/step/child_bytes.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 namespace sketchsplat {
 namespace {
@@ -52,6 +54,22 @@ TEST(ChildBytes, ExceptionsAreExitStatuses) {
   EXPECT_EQ(threw.bytes, "");
   const auto full = run_in_child([]() -> std::string { throw std::bad_alloc(); }, 60);
   EXPECT_EQ(full.exit_status, 2);
+}
+
+TEST(ChildBytes, InAChildWorkRunsInPlaceAndItsExceptionsAreTheSame) {
+  const ChildBytes out = run_in_child(
+      [] {
+        const pid_t child = getpid();
+        pid_t inner = 0;
+        const auto said = run_in_child([&] { return std::to_string(inner = getpid()); }, 60);
+        const auto threw = run_in_child([]() -> std::string { throw std::bad_alloc(); }, 60);
+        return said.bytes == std::to_string(child) && inner == child &&
+                       threw.exit_status == ChildBytes::kNoMemory
+                   ? "in place"
+                   : "elsewhere";
+      },
+      60);
+  EXPECT_EQ(out.bytes, "in place");
 }
 
 }  // namespace
