@@ -8,6 +8,8 @@
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #include <sanitizer/asan_interface.h>
+#elif __has_feature(thread_sanitizer)
+#define TSAN_ALLOCATES
 #endif
 #endif
 #ifndef ASAN_POISON_MEMORY_REGION
@@ -57,7 +59,7 @@ class LargeArray {
   char* behind_ = nullptr;
 };
 
-LargeArray large_array;
+[[maybe_unused]] LargeArray large_array;
 
 }  // namespace
 
@@ -72,6 +74,7 @@ std::vector<std::string> fuzz_seeds() {
 
 }  // namespace sketchsplat
 
+#ifndef TSAN_ALLOCATES
 void* operator new[](size_t bytes) {
   using sketchsplat::large_array;
   void* array = large_array.has_room_for(bytes) ? large_array.take(bytes) : nullptr;
@@ -83,6 +86,7 @@ void operator delete[](void* array) noexcept {
   if (array && !sketchsplat::large_array.gives_back(array)) std::free(array);
 }
 void operator delete[](void* array, size_t) noexcept { operator delete[](array); }
+#endif
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size) {
   using namespace sketchsplat;
