@@ -11,15 +11,24 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kScales = 5;      // 1, 2, 4, 8, 16
-constexpr int kRates = 10;      // shares of the views that show an edge, over which is integrated
-constexpr double kAsidePx = 5;  // [px] of copies in space
+constexpr int kScales = 5;       // 1, 2, 4, 8, 16
+constexpr int kRates = 10;       // shares of the views that show an edge, over which is integrated
+constexpr double kAsidePx = 5;   // [px] of copies in space
+constexpr double kSmallPx = 30;  // [px] across a closed curve that copies cross
 
 std::vector<int> pieces_of(int points, double piece_px) {
   const int pieces = std::max(1, int(std::lround(points / piece_px)));
   std::vector<int> first;
   for (int p = 0; p <= pieces; ++p) first.push_back(int(int64_t(points) * p / pieces));
   return first;
+}
+
+// A closed curve less than so far across.
+bool is_small(const CurvePoints& curve, double most) {
+  const Eigen::Matrix3Xd& p = curve.position;
+  const double step = (p.col(1) - p.col(0)).norm();
+  return (p.col(0) - p.col(p.cols() - 1)).norm() < 2 * step &&
+         (p.col(0) - p.col(p.cols() / 2)).norm() < most;
 }
 
 // Sums of a likelihood ratio over views: those that must show the edge, and others.
@@ -68,6 +77,11 @@ ContrastJudge::ContrastJudge(const EdgeWorld& world, const CurvePoints& strokes,
 
 ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every,
                                       const std::vector<Window>& windows) const {
+  return judge_without(nullptr, curve, every, windows);
+}
+
+ContrastEvidence ContrastJudge::judge_without(const CurvePoints* other, const CurvePoints& curve,
+                                              int every, const std::vector<Window>& windows) const {
   const std::vector<int> first = pieces_of(int(curve.position.cols()), options_.piece_px);
   const int pieces = int(first.size()) - 1;
   ContrastEvidence out;
@@ -87,7 +101,7 @@ ContrastEvidence ContrastJudge::judge(const CurvePoints& curve, int every,
     const bool any_shut = std::count(shut.begin(), shut.end(), 1) > 0;
     if (any_shut && std::count(shut.begin(), shut.end(), 1) == pieces) continue;
     const std::vector<ContrastReading> readings =
-        read_contrasts(world_, v, curve, first, known_, every);
+        read_contrasts(world_, v, curve, first, known_, every, other);
     double sum = 0;
     int tell = 0, sure = 0;
     std::vector<double> each(pieces);
@@ -141,11 +155,12 @@ double ContrastJudge::beside(const CurvePoints& curve, const std::vector<Window>
   }
   Eigen::Vector3d x, y;
   frame_of<double>(along.norm() > 0 ? along.normalized() : Eigen::Vector3d::UnitZ(), &x, &y);
+  const CurvePoints* other = is_small(curve, kSmallPx * world_.footprint) ? &curve : nullptr;
   double most = -INFINITY;
   for (const Eigen::Vector3d& way : {x, y, Eigen::Vector3d(-x), Eigen::Vector3d(-y)}) {
     CurvePoints copy = curve;
     copy.position.colwise() += kAsidePx * world_.footprint * way;
-    most = std::max(most, judge(copy, 1, windows).nats);
+    most = std::max(most, judge_without(other, copy, 1, windows).nats);
   }
   return most;
 }

@@ -61,10 +61,14 @@ class ContrastJudge {
   void take(const CurvePoints& curve);
 
   /// The most that copies of the curve say which are moved aside in space, by 5 px in four
-  /// directions [nat]: what texture or a neighbour says that is there.
+  /// directions [nat]: what texture or a neighbour says that is there. A closed curve less than 30
+  /// px across they cross: what lies around it is left out.
   double beside(const CurvePoints& curve, const std::vector<Window>& windows = {}) const;
 
  private:
+  ContrastEvidence judge_without(const CurvePoints* other, const CurvePoints& curve, int every,
+                                 const std::vector<Window>& windows) const;
+
   const EdgeWorld& world_;
   ContrastOptions options_;
   KnownEdges known_;

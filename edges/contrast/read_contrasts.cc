@@ -17,11 +17,16 @@ constexpr int kSide = kReach + kArm;  // [px] that is read on either side
 constexpr int kKnownPx = 2;           // [px] around edgels that are explained
 constexpr double kLeastShare = 0.5;   // of the points that must tell
 constexpr int kFewestCopies = 5;
-constexpr double kFreedom = 4;       // that copies which overlap leave
-constexpr double kPrior = 10;        // more, where the picture's noise tells the scale
-constexpr double kCalm = 2.5;        // times what noise makes: the variance of copies, then
-constexpr double kSharp = 0.6;       // share of a step that the filter may read 3 px beside it
-constexpr double kLeastNoise = 0.3;  // [grey levels of 255] of whole numbers alone
+constexpr double kFreedom = 4;          // that copies which overlap leave
+constexpr double kPrior = 10;           // more, where the picture's noise tells the scale
+constexpr double kCalm = 2.5;           // times what noise makes: the variance of copies, then
+constexpr double kSharp = 0.6;          // share of a step that the filter may read 3 px beside it
+constexpr double kInside = 0.8;         // of the way to the centre of curvature, that copies may go
+constexpr int kTurn = 3;                // points before and after, that tell the curvature
+constexpr int kPiece = 24, kEvery = 2;  // points of which copies tell the clutter of a view
+constexpr size_t kFewestSquares = 100;  // readings of copies
+constexpr double kMedianOfSquare = 0.455;  // of a normal variable
+constexpr double kLeastNoise = 0.3;        // [grey levels of 255] of whole numbers alone
 
 using Taps = std::array<float, 2 * kSide + 1>;  // grey values across; NaN: unknown
 
@@ -57,6 +62,25 @@ bool project(const EdgeWorld& world, const View& v, const Eigen::Vector3d& x,
   *along = 2 * (v.project(x + 0.5 * world.footprint * tangent, &beyond) - *pixel);
   return depth > 0 && along->norm() > 0.2;
 }
+
+// Copies of a curve that turns are moved aside up to near its centre of curvature: beyond, they are
+// on the other side of a small hole.
+class Turn {
+ public:
+  // Points before, at and after; the way across.
+  Turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+       const Eigen::Vector2d& across) {
+    const Eigen::Vector2d u = b - a, w = c - b;
+    const double lengths = u.norm() * w.norm() * (c - a).norm();
+    if (lengths > 0)
+      curvature_ =
+          2 * std::abs(u.x() * w.y() - u.y() * w.x()) / lengths * (across.dot(w - u) < 0 ? -1 : 1);
+  }
+  bool reaches(int offset) const { return offset * curvature_ < kInside; }
+
+ private:
+  double curvature_ = 0;  // [1/px], positive if the centre lies across
+};
 
 // The filter's sums at all offsets, over the points of a piece.
 struct Sums {
@@ -108,16 +132,21 @@ Foretold foretell(const Sums& s) {
   return out;
 }
 
-ContrastReading reading(const Sums& s, double noise) {
+// `clutter`: what copies beside the strokes of the view read, NaN if too few are known.
+ContrastReading reading(const Sums& s, double noise, double clutter) {
   ContrastReading out;
   if (!s.tells(0)) return out;
-  const Foretold f = foretell(s);
-  if (f.copies < kFewestCopies) return out;
+  Foretold f = foretell(s);
   const double here = noise * noise / s.count[kReach], n = f.copies - 2;
   double variance = f.squares / n;
   out.freedom = kFreedom;
-  if (variance < kCalm * here)  // nothing but noise, whose size is known well
+  if (f.copies < kFewestCopies) {  // there is no room beside it: as elsewhere in the view
+    if (std::isnan(clutter)) return out;
+    f = {};
+    variance = here + clutter;
+  } else if (variance < kCalm * here) {  // nothing but noise, whose size is known well
     variance = (kPrior * here + f.squares) / (kPrior + n), out.freedom = kPrior + kFreedom;
+  }
   const double step = s.mean(0) - f.level;
   out.tells = true;
   out.z = step / std::sqrt(variance * (1 + f.variance));
@@ -127,6 +156,86 @@ ContrastReading reading(const Sums& s, double noise) {
       out.z = 0;
   }
   return out;
+}
+
+Turn turn_at(const View& v, const CurvePoints& curve, int i, const Eigen::Vector2d& q,
+             const Eigen::Vector2d& across) {
+  const int n = int(curve.position.cols());
+  const bool closed = (curve.position.col(0) - curve.position.col(n - 1)).norm() <
+                      2 * (curve.position.col(1) - curve.position.col(0)).norm();
+  const int step = std::min(kTurn, std::max(1, n / 8));
+  int a = i - step, c = i + step;
+  if (closed) a = (a + n) % n, c %= n;
+  if (a < 0 || c >= n) return Turn(q, q, q, across);
+  double depth;
+  const Eigen::Vector2d before = v.project(curve.position.col(a), &depth);
+  return Turn(before, q, v.project(curve.position.col(c), &depth), across);
+}
+
+// Pixels of a view that say nothing.
+struct Masked {
+  const Image<uint8_t>& near;
+  std::vector<Eigen::Vector2d> other = {};  // points on a curve around which they do not either
+
+  bool masks(const Eigen::Vector2d& p, uint8_t ways) const {
+    return is_known(near, p, ways) ||
+           std::any_of(other.begin(), other.end(), [&](const Eigen::Vector2d& o) {
+             return (p - o).lpNorm<Eigen::Infinity>() < kKnownPx + 0.5;
+           });
+  }
+};
+
+// Of the points from `first` to `end`.
+Sums read_piece(const EdgeWorld& world, int view, const CurvePoints& curve, int first, int end,
+                const Masked& masked, int every) {
+  const View& v = world.views[view];
+  Sums sums;
+  for (int i = first; i < end; i += every) {
+    ++sums.points;
+    Eigen::Vector2d q, along;
+    if (!project(world, v, curve.position.col(i), curve.tangent.col(i), &q, &along)) continue;
+    const uint8_t ways = way_bits(along, 1);
+    const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
+    const Turn turn = turn_at(v, curve, i, q, across);
+    Taps taps;
+    for (int o = -kSide; o <= kSide; ++o) {
+      const Eigen::Vector2d ideal = q + o * across;
+      Eigen::Vector2d image;
+      taps[o + kSide] =
+          !turn.reaches(o) || masked.masks(ideal, ways) || !v.image_pixel(ideal, &image)
+              ? NAN
+              : grey_at(*world.maps[view].grey, image.x(), image.y());
+    }
+    sums.add(taps);
+  }
+  return sums;
+}
+
+double noise_of(const EdgelMap& map) { return std::max<double>(map.noise, kLeastNoise / 255); }
+
+// Variance of what copies beside strokes read, less the noise; NaN if there are too few.
+double clutter_of(const EdgeWorld& world, int view, const CurvePoints& strokes,
+                  const Image<uint8_t>& near) {
+  const double noise = noise_of(world.maps[view]);
+  std::vector<double> squares;
+  double mean_noise = 0;
+  for (size_t s = 0; s + 1 < strokes.first.size(); ++s) {
+    const int last = strokes.first[s + 1];
+    for (int at = strokes.first[s]; at < last; at += kPiece) {
+      const Sums sums =
+          read_piece(world, view, strokes, at, std::min(at + kPiece, last), {near}, kEvery);
+      for (int o = -kReach; o <= kReach; ++o)
+        if (std::abs(o) >= kNearCopy && sums.tells(o)) {
+          squares.push_back(sums.mean(o) * sums.mean(o));
+          mean_noise += noise * noise / sums.count[o + kReach];
+        }
+    }
+  }
+  if (squares.size() < kFewestSquares) return NAN;
+  mean_noise /= double(squares.size());
+  const auto middle = squares.begin() + squares.size() / 2;
+  std::nth_element(squares.begin(), middle, squares.end());
+  return std::max(0.0, *middle / kMedianOfSquare - mean_noise);
 }
 
 void mark_around(double x, double y, uint8_t ways, Image<uint8_t>* near) {
@@ -153,6 +262,7 @@ KnownEdges known_edges(const EdgeWorld& world, const CurvePoints& strokes,
                        const std::vector<std::vector<char>>& explained) {
   KnownEdges out;
   out.near.resize(world.maps.size());
+  out.clutter.assign(world.maps.size(), NAN);
   parallel_for(int(world.maps.size()), 1, [&](int v) {
     const EdgelMap& map = world.maps[v];
     if (!map.grey) return;
@@ -160,42 +270,32 @@ KnownEdges known_edges(const EdgeWorld& world, const CurvePoints& strokes,
     for (size_t i = 0; i < map.edgels.size(); ++i)
       if (explained[v][i]) mark_around(map.edgels[i].x, map.edgels[i].y, 255, &out.near[v]);
     add_known(world, v, strokes, &out);
+    out.clutter[v] = clutter_of(world, v, strokes, out.near[v]);
   });
   return out;
 }
 
 std::vector<ContrastReading> read_contrasts(const EdgeWorld& world, int view,
                                             const CurvePoints& curve, const std::vector<int>& first,
-                                            const KnownEdges& known, int every) {
+                                            const KnownEdges& known, int every,
+                                            const CurvePoints* other) {
   const int pieces = int(first.size()) - 1;
   std::vector<ContrastReading> out(pieces + 1);
   const EdgelMap& map = world.maps[view];
   if (!map.grey) return out;
-  const View& v = world.views[view];
   Sums whole;
-  const double noise = std::max<double>(map.noise, kLeastNoise / 255);
+  const double noise = noise_of(map);
+  Masked masked{known.near[view]};
+  double depth;
+  if (other)
+    for (int i = 0; i < other->position.cols(); ++i)
+      masked.other.push_back(world.views[view].project(other->position.col(i), &depth));
   for (int p = 0; p < pieces; ++p) {
-    Sums sums;
-    for (int i = first[p]; i < first[p + 1]; i += every) {
-      ++sums.points;
-      Eigen::Vector2d q, along;
-      if (!project(world, v, curve.position.col(i), curve.tangent.col(i), &q, &along)) continue;
-      const uint8_t ways = way_bits(along, 1);
-      const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
-      Taps taps;
-      for (int o = -kSide; o <= kSide; ++o) {
-        const Eigen::Vector2d ideal = q + o * across;
-        Eigen::Vector2d image;
-        taps[o + kSide] = is_known(known.near[view], ideal, ways) || !v.image_pixel(ideal, &image)
-                              ? NAN
-                              : grey_at(*map.grey, image.x(), image.y());
-      }
-      sums.add(taps);
-    }
-    out[p] = reading(sums, noise);
+    const Sums sums = read_piece(world, view, curve, first[p], first[p + 1], masked, every);
+    out[p] = reading(sums, noise, known.clutter[view]);
     whole.add(sums);
   }
-  out[pieces] = reading(whole, noise);
+  out[pieces] = reading(whole, noise, known.clutter[view]);
   return out;
 }
 

@@ -13,6 +13,9 @@ namespace sketchsplat {
 /// ways along which it runs, near edgels all; empty for views without a picture.
 struct KnownEdges {
   std::vector<Image<uint8_t>> near;
+  /// Per view: variance of what the filter reads beside strokes, 4 to 8 px away, less that of the
+  /// noise [grey values, 0 to 1, squared]; NaN if there are too few.
+  std::vector<double> clutter;
 };
 /// `strokes`: of all strokes, points a pixel apart; `explained`: per view and edgel.
 KnownEdges known_edges(const EdgeWorld& world, const CurvePoints& strokes,
@@ -36,9 +39,10 @@ struct ContrastReading {
 /// Readings of a view, one per piece and last that of all pieces together. The filter is the
 /// difference of the means at 1 and 2 px on either side, averaged along the piece. `first`: P + 1,
 /// piece p owns points first[p] .. first[p + 1] - 1 of the curve, which lie about a pixel apart;
-/// every `every`th is read.
+/// every `every`th is read. `other`: a curve, pixels near which are known as well; null: none.
 std::vector<ContrastReading> read_contrasts(const EdgeWorld& world, int view,
                                             const CurvePoints& curve, const std::vector<int>& first,
-                                            const KnownEdges& known, int every);
+                                            const KnownEdges& known, int every,
+                                            const CurvePoints* other = nullptr);
 
 }  // namespace sketchsplat

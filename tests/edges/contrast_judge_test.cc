@@ -181,6 +181,50 @@ TEST(ContrastJudge, WhatAKnownStrokeShowsIsNotShownTwice) {
   EXPECT_LE(later.judge(beside).nats, 0);
 }
 
+CurvePoints circle_on_plane(const Vector2d& centre, double radius_px) {
+  const double radius = radius_px * kFootprint;
+  const int n = int(2 * M_PI * radius_px);
+  CurvePoints out;
+  out.position.resize(3, n), out.tangent.resize(3, n);
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * (i + 0.5) / n;
+    out.position.col(i) =
+        Vector3d(centre.x() + radius * std::cos(a), centre.y() + radius * std::sin(a), 0);
+    out.tangent.col(i) = Vector3d(-std::sin(a), std::cos(a), 0);
+  }
+  out.first = {0, n};
+  return out;
+}
+
+// A hole of 6 px of radius whose centre is 14 px from the border of a plate: there is no room for
+// copies beside its rim. What they would read is known from the border.
+TEST(ContrastJudge, ASmallHoleNextToABorderShowsAndWhatIsBesideItDoesNot) {
+  const double border = 14 * kFootprint, radius = 6 * kFootprint;
+  const auto plate = [&](double step) {
+    return [=](const Vector2d& p, int) {
+      return (p.x() > border ? 60 : 120) + (p.norm() < radius ? step : 0);
+    };
+  };
+  const CurvePoints known = line_on_plane({border, 0}, kUpright, 300);
+  const CurvePoints rim = circle_on_plane(kOrigin, 6);
+  const EdgeWorld with = painted(plate(25), 5, 1), without = painted(plate(0), 5, 1);
+  const ContrastJudge judge(with, known, no_edgels(with), {});
+  const double nats = judge.judge(rim).nats;
+  EXPECT_GT(nats, 15);
+  EXPECT_LT(judge.beside(rim), 0.2 * nats);
+  EXPECT_LT(ContrastJudge(without, known, no_edgels(without), {}).judge(rim).nats, 0);
+  // Half of the hole beside another one is no hole of its own.
+  EXPECT_LT(judge.judge(circle_on_plane({-6 * kFootprint, 0}, 6)).nats, 0.2 * nats);
+}
+
+// Copies of its rim do not go beyond its middle, where the other side of it is.
+TEST(ContrastJudge, TheOtherSideOfASmallHoleIsNoClutter) {
+  const auto hole = [](const Vector2d& p, int) {
+    return 120 + (p.norm() < 5 * kFootprint ? 20 : 0);
+  };
+  EXPECT_GT(judge_of(painted(hole, 5, 1)).judge(circle_on_plane(kOrigin, 5)).nats, 22);
+}
+
 TEST(AlarmThreshold, KeepsTheRateOfATailOfAnyWidthAndFallsBackOnMarkov) {
   EXPECT_NEAR(alarm_threshold({1, 2, 3}, 100, 0.05), std::log(2000), 1e-9);
   for (const double width : {1.0, 3.0}) {
