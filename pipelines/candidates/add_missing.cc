@@ -13,6 +13,7 @@
 #include "edges/views/unexplained.h"
 #include "pipelines/candidates/depth_copies.h"
 #include "pipelines/candidates/level_copies.h"
+#include "pipelines/candidates/level_rings.h"
 #include "pipelines/candidates/pattern_copies.h"
 #include "sketches/curve/sample.h"
 
@@ -41,14 +42,16 @@ constexpr double kAgainst = -2;        // [nat] of one of a group that is not th
 constexpr double kBeside = 0.4;        // of the nats of a candidate that copies aside may get
 constexpr double kGroupBeside = 0.6;   // of a group: short edges, moved aside, meet neighbours
 
-ContrastJudge judge_beside(const Sketch& sketch, const EdgeWorld& world,
-                           const ContrastOptions& options) {
-  const SampleLayout layout = plan_samples(sketch, world.footprint);
+CurvePoints points_on(const Sketch& sketch, double spacing) {
+  const SampleLayout layout = plan_samples(sketch, spacing);
   const Samples samples = evaluate_samples(sketch, layout);
-  const CurvePoints strokes{samples.position, samples.tangent, layout.first};
+  return {samples.position, samples.tangent, layout.first};
+}
+
+EdgelFlags explained_by(const CurvePoints& strokes, const EdgeWorld& world) {
   EdgelFlags explained = no_edgels(world);
   explain(world, strokes, {}, &explained);
-  return {world, strokes, explained, options};
+  return explained;
 }
 
 // What candidates get where there is no edge: copies of each, moved aside in space, all in
@@ -92,15 +95,17 @@ bool is_rim(const EdgeWorld& world, const CurvePoints& points, double least) {
 }
 
 std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& world,
-                                      const KnownCurves& known, const ContrastJudge& judge,
-                                      int* depths) {
+                                      const EdgelFlags& explained, const KnownCurves& known,
+                                      const ContrastJudge& judge, int* depths) {
   const double tolerance = kLevelPx * world.footprint;
   const std::vector<Levels> levels = find_levels(sketch, tolerance);
   // Of what several tell the first counts: that which knows from where it is seen.
   std::vector<Candidate> out = depth_copies(sketch, levels, known, judge, world, depths);
+  for (Candidate& c : out)
+    if (c.group < 0) settle(levels, tolerance, &c);
   for (const std::vector<Candidate>& more :
        {level_copies(sketch, levels), mirror_copies(sketch, levels),
-        circle_patterns(sketch, tolerance)})
+        circle_patterns(sketch, tolerance), level_rings(levels, world, explained)})
     for (const Candidate& c : more) {
       out.push_back(c);
       settle(levels, tolerance, &out.back());
@@ -132,10 +137,12 @@ struct Judged {
   std::vector<double> nats, nulls;
   std::map<int, Group> groups;  // of more than one
   int depths = 0;               // that were tried for groups
-  int tests() const { return int(candidates.size()) + depths; }
+  int refused = 0;              // that nothing spoke for in a pass before
+  int tests() const { return int(candidates.size()) + depths + refused; }
 };
 
 // Several sources may tell of one place, from either end.
+constexpr double kSamePx = 0.7;
 bool is_same(const CurvePoints& a, const CurvePoints& b, double reach) {
   const auto first = a.position.col(0), last = a.position.col(a.position.cols() - 1);
   const auto middle = a.position.col(a.position.cols() / 2);
@@ -178,11 +185,14 @@ Seen seen_at_best(const Candidate& c, const CurvePoints& moved, const ContrastJu
   return hasty.nats > kPromise ? seen(1) : hasty;
 }
 
-Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge& judge) {
+// `refused`: candidates of passes before that nothing spoke for; these are added.
+Judged judged(const Sketch& sketch, const EdgeWorld& world, const EdgelFlags& explained,
+              const ContrastJudge& judge, std::vector<CurvePoints>* refused) {
   const double px = world.footprint;
   const KnownCurves known(sketch, px, kKnownPx * px);
   Judged out;
-  const std::vector<Candidate> all = all_candidates(sketch, world, known, judge, &out.depths);
+  const std::vector<Candidate> all =
+      all_candidates(sketch, world, explained, known, judge, &out.depths);
   if (int(all.size()) > kMostCandidates) return out;
   for (const Candidate& c : all) {
     const CurvePoints points = candidate_points(c, px);
@@ -193,9 +203,12 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
       (c.floor ? group.known_floor : group.known).push_back(share * kKnownNats);
     }
     if (share > (c.group >= 0 ? kWholeShare : kKnownShare)) continue;
-    if (std::any_of(out.points.begin(), out.points.end(),
-                    [&](const CurvePoints& p) { return is_same(p, points, 0.7 * px); }))
+    const auto is_this = [&](const CurvePoints& p) { return is_same(p, points, kSamePx * px); };
+    if (std::any_of(out.points.begin(), out.points.end(), is_this)) continue;
+    if (c.group < 0 && std::any_of(refused->begin(), refused->end(), is_this)) {
+      ++out.refused;
       continue;
+    }
     out.candidates.push_back(c);
     out.points.push_back(points);
   }
@@ -214,22 +227,30 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const ContrastJudge&
     c.windows = seen.windows;
   });
   out.nulls.erase(std::remove(out.nulls.begin(), out.nulls.end(), -INFINITY), out.nulls.end());
-  for (int i = 0; i < n; ++i)
-    if (out.candidates[i].group >= 0) out.groups[out.candidates[i].group].members.push_back(i);
+  for (int i = 0; i < n; ++i) {
+    const int group = out.candidates[i].group;
+    if (group >= 0)
+      out.groups[group].members.push_back(i);
+    else if (!(out.nats[i] > 0))
+      refused->push_back(out.points[i]);
+  }
   return out;
 }
 
 // One pass over all candidates.
 class Pass {
  public:
-  Pass(const Sketch& sketch, const EdgeWorld& world, const MissingOptions& options)
+  Pass(const Sketch& sketch, const EdgeWorld& world, const MissingOptions& options,
+       std::vector<CurvePoints>* refused)
       : sketch_(sketch),
         world_(world),
         options_(options),
-        judge_(judge_beside(sketch, world, options.contrast)),
-        all_(judged(sketch, world, judge_)),
-        least_(
-            alarm_threshold(all_.nulls, all_.candidates.size(), options.false_strokes / kPasses)),
+        strokes_(points_on(sketch, world.footprint)),
+        explained_(explained_by(strokes_, world)),
+        judge_(world, strokes_, explained_, options.contrast),
+        all_(judged(sketch, world, explained_, judge_, refused)),
+        least_(alarm_threshold(all_.nulls, all_.candidates.size() + size_t(all_.refused),
+                               options.false_strokes / kPasses)),
         least_of_group_(kGroup * std::log((all_.depths + double(all_.groups.size())) * kPasses /
                                           options.false_strokes)) {}
 
@@ -308,6 +329,8 @@ class Pass {
   const Sketch& sketch_;
   const EdgeWorld& world_;
   const MissingOptions& options_;
+  CurvePoints strokes_;
+  EdgelFlags explained_;
   ContrastJudge judge_;
   Judged all_;
   double least_, least_of_group_;  // [nat]
@@ -333,9 +356,10 @@ void drop_covered(int first, double px, MissingEdges* all) {
 MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
                          const MissingOptions& options) {
   MissingEdges out{sketch, {}, {}, {}, 0};
+  std::vector<CurvePoints> refused;
   // What was found leads to expect more: the other rim of a hole that is part of a pattern.
   for (int pass = 0; pass < kPasses; ++pass) {
-    const MissingEdges more = Pass(out.sketch, world, options).run();
+    const MissingEdges more = Pass(out.sketch, world, options, &refused).run();
     out.sketch = more.sketch;
     out.nats.insert(out.nats.end(), more.nats.begin(), more.nats.end());
     out.group.insert(out.group.end(), more.group.begin(), more.group.end());

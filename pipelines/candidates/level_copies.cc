@@ -113,18 +113,6 @@ Levels levels_across(const Sketch& s, const Vector3d& normal, double tolerance) 
   return out;
 }
 
-// Those with the most strokes. Where everything is a level, as on a natural surface, the others
-// tell nothing, and copies of all strokes in all of them would be as many as strokes squared.
-std::vector<char> main_levels(const Levels& l) {
-  std::vector<int> order(l.height.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return l.strokes[a].size() > l.strokes[b].size(); });
-  std::vector<char> out(order.size(), 0);
-  for (size_t k = 0; k < order.size() && k < kMostLevels; ++k) out[order[k]] = 1;
-  return out;
-}
-
 }  // namespace
 
 std::vector<Levels> find_levels(const Sketch& sketch, double tolerance) {
@@ -133,6 +121,16 @@ std::vector<Levels> find_levels(const Sketch& sketch, double tolerance) {
     if (d.count < kFewest || int(out.size()) == kMostDirections) break;
     out.push_back(levels_across(sketch, d.sum.normalized(), tolerance));
   }
+  return out;
+}
+
+std::vector<char> main_levels(const Levels& l) {
+  std::vector<int> order(l.height.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return l.strokes[a].size() > l.strokes[b].size(); });
+  std::vector<char> out(order.size(), 0);
+  for (size_t k = 0; k < order.size() && k < kMostLevels; ++k) out[order[k]] = 1;
   return out;
 }
 

@@ -23,6 +23,11 @@ Eigen::Vector3d plane_normal(StrokeKind kind, const ControlPoints& controls);
 /// units.
 std::vector<Levels> find_levels(const Sketch& sketch, double tolerance);
 
+/// Of each level, whether it is one of the eight that hold the most strokes. Where everything is a
+/// level, as on a natural surface, the others tell nothing, and what is tried in all of them would
+/// be as many as strokes squared.
+std::vector<char> main_levels(const Levels& levels);
+
 /// The curve moved along a vector.
 Candidate moved(const Candidate& candidate, const Eigen::Vector3d& by);
 
@@ -31,8 +36,7 @@ Candidate moved(const Candidate& candidate, const Eigen::Vector3d& by);
 void settle(const std::vector<Levels>& levels, double tolerance, Candidate* candidate);
 
 /// What is in one level, in the other ones: the other rim of a hole, the floor of a pocket whose
-/// depth others share, the far side of a plate. Of every direction the eight levels that hold the
-/// most strokes are copied to, so that copies are linear in the number of strokes.
+/// depth others share, the far side of a plate. Copies go to main levels.
 std::vector<Candidate> level_copies(const Sketch& sketch, const std::vector<Levels>& levels);
 
 }  // namespace sketchsplat

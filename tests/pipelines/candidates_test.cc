@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "pipelines/candidates/add_missing.h"
 #include "pipelines/candidates/level_copies.h"
+#include "pipelines/candidates/level_rings.h"
 #include "pipelines/candidates/pattern_copies.h"
+#include "tests/support/wireframe.h"
 
 namespace sketchsplat {
 namespace {
@@ -65,6 +69,29 @@ TEST(Candidates, CopiesSettleInTheLevelsThatLargeStrokesTell) {
   elsewhere.curve.p[0].z() = 0.1;
   settle(levels, kTolerance, &elsewhere);
   EXPECT_EQ(elsewhere.curve.p[0].z(), 0.1);
+}
+
+// The plate, and three holes of which edgels tell: one in its top, one 0.1 below, one that two
+// views see.
+TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevel) {
+  const auto rim = [](const Vector3d& c) {
+    return test::circle(c, 0.03 * Vector3d::UnitX(), 0.03 * Vector3d::UnitY());
+  };
+  const Vector3d in_top(0.6, 0.6, 0.2), below(0.8, 0.2, 0.1), seldom(0.2, 0.7, 0.2);
+  const std::vector<View> views = test::ring_of_views(12, {0.5, 0.5, 0.1}, 2.5);
+  EdgeWorld world = test::ideal_world(views, {rim(in_top), rim(below)});
+  world.footprint = 0.005;
+  const EdgeWorld more = test::ideal_world(views, {rim(seldom), rim(in_top), rim(below)});
+  for (const size_t v : {size_t(0), size_t(1)}) world.maps[v] = more.maps[v];
+  const std::vector<Levels> levels = find_levels(plate(), kTolerance);
+  const std::vector<Candidate> rings = level_rings({levels[0]}, world, no_edgels(world));
+  ASSERT_EQ(rings.size(), 1);
+  EXPECT_EQ(rings[0].kind, StrokeKind::kCircle);
+  EXPECT_LT((rings[0].curve.p[0] - in_top).norm(), 0.1 * world.footprint);
+  EXPECT_NEAR(rings[0].curve.p[1].norm(), 0.03, 0.1 * world.footprint);
+  EdgelFlags explained = no_edgels(world);
+  for (std::vector<char>& view : explained) std::fill(view.begin(), view.end(), 1);
+  EXPECT_TRUE(level_rings({levels[0]}, world, explained).empty());
 }
 
 // As on a natural surface, where every stroke is a level of its own.
