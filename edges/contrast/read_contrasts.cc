@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 
 namespace sketchsplat {
@@ -67,7 +69,7 @@ bool project(const EdgeWorld& world, const View& v, const Eigen::Vector3d& x,
 // on the other side of a small hole.
 class Turn {
  public:
-  // Points before, at and after; the way across.
+  // Points before, at and after (Menger's curvature); the way across.
   Turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
        const Eigen::Vector2d& across) {
     const Eigen::Vector2d u = b - a, w = c - b;
@@ -233,9 +235,7 @@ double clutter_of(const EdgeWorld& world, int view, const CurvePoints& strokes,
   }
   if (squares.size() < kFewestSquares) return NAN;
   mean_noise /= double(squares.size());
-  const auto middle = squares.begin() + squares.size() / 2;
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::max(0.0, *middle / kMedianOfSquare - mean_noise);
+  return std::max(0.0, median(std::move(squares)) / kMedianOfSquare - mean_noise);
 }
 
 void mark_around(double x, double y, uint8_t ways, Image<uint8_t>* near) {

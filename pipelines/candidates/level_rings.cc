@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "sketches/fit/fit.h"
 
@@ -90,12 +91,6 @@ bool ring_of(const Chain& chain, const View& view, const Level& level, double fo
 
 bool agree(const Ring& a, const Ring& b, double reach) {
   return std::abs(a.radius - b.radius) < reach && (a.centre - b.centre).norm() < reach;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // What most views agree on, again and again without these.
