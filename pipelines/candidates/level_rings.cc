@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/candidates/level_rings.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "datasets/types/widest_gap.h"
 #include "sketches/fit/fit.h"
 
 namespace sketchsplat {
@@ -18,17 +18,14 @@ constexpr int kFewestEdgels = 8;
 constexpr double kFreeShare = 0.7;    // of a chain that nothing else explains
 constexpr double kFrontal = 0.25;     // cosine of the line of sight and the normal, at least
 constexpr double kRoundPx = 0.8;      // [px] rms distance in the picture from a circle in the plane
-constexpr double kMostGapDeg = 150;   // of the circle without an edgel
+constexpr double kMostGap = 2.6;      // [rad] of the circle without an edgel
 constexpr double kLeastRadiusPx = 2;  // [footprints]
 constexpr double kMostRadiusPx = 40;  // [footprints]: larger ones are matched as others are
 constexpr double kSamePx = 1.5;       // [footprints] of centres and radii of one circle
 constexpr int kFewestViews = 3;
 constexpr size_t kMostRings = 2000;  // in one level; a texture of rings tells nothing
 
-struct Level {
-  Vector3d normal;
-  double height;
-};
+using Level = Eigen::Hyperplane<double, 3>;
 
 struct Ring {
   int view;
@@ -51,19 +48,6 @@ std::vector<Chain> free_chains(const EdgelMap& map, const std::vector<char>& exp
   return out;
 }
 
-double largest_gap_deg(const Matrix3Xd& points, const Vector3d& centre, const Vector3d& normal) {
-  const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
-  std::vector<double> angle;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Vector3d p = points.col(i) - centre;
-    angle.push_back(std::atan2(p.dot(v), p.dot(u)) * 180 / M_PI);
-  }
-  std::sort(angle.begin(), angle.end());
-  double gap = angle.front() + 360 - angle.back();
-  for (size_t i = 1; i < angle.size(); ++i) gap = std::max(gap, angle[i] - angle[i - 1]);
-  return gap;
-}
-
 // The circle in the plane whose picture a chain is.
 bool ring_of(const Chain& chain, const View& view, const Level& level, double footprint,
              Ring* out) {
@@ -71,19 +55,20 @@ bool ring_of(const Chain& chain, const View& view, const Level& level, double fo
   const Vector3d camera = view.center_in_world();
   Matrix3Xd points(3, Eigen::Index(chain.size()));
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Vector3d way = world_from_cam * view.camera.ray(chain[i]);
-    const double depth = (level.height - level.normal.dot(camera)) / level.normal.dot(way);
+    const Eigen::ParametrizedLine<double, 3> ray(camera,
+                                                 world_from_cam * view.camera.ray(chain[i]));
+    const double depth = ray.intersectionParameter(level);
     if (!(depth > 0)) return false;
-    points.col(i) = camera + depth * way;
+    points.col(i) = ray.pointAt(depth);
   }
   const Vector3d middle = points.rowwise().mean();
-  const double frontal = std::abs((middle - camera).normalized().dot(level.normal));
+  const double frontal = std::abs((middle - camera).normalized().dot(level.normal()));
   const double size = (points.colwise() - middle).colwise().norm().maxCoeff();
   if (frontal < kFrontal || size > 2 * kMostRadiusPx * footprint) return false;
   const CircleFit fit = fit_circle(points);
   if (!fit.success || fit.radius < kLeastRadiusPx * footprint ||
       fit.radius > kMostRadiusPx * footprint || fit.rms * frontal > kRoundPx * footprint ||
-      largest_gap_deg(points, fit.centre, level.normal) > kMostGapDeg)
+      widest_gap(points.colwise() - fit.centre, level.normal()) > kMostGap)
     return false;
   *out = {0, fit.centre, fit.radius};
   return true;
@@ -118,7 +103,7 @@ void add_agreed(std::vector<Ring> rings, const Level& level, double reach,
     }
     c.curve.count = 2;
     for (int d = 0; d < 3; ++d) c.curve.p[0][d] = median(value[d]);
-    c.curve.p[1] = median(value[3]) * level.normal;
+    c.curve.p[1] = median(value[3]) * level.normal();
     out->push_back(c);
     for (size_t k = best.size(); k-- > 0;) rings.erase(rings.begin() + std::ptrdiff_t(best[k]));
   }
@@ -135,7 +120,7 @@ std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const Edge
   for (const Levels& l : levels) {
     const std::vector<char> main = main_levels(l);
     for (size_t k = 0; k < l.height.size(); ++k)
-      if (main[k]) all.push_back({l.normal, l.height[k]});
+      if (main[k]) all.emplace_back(l.normal, -l.height[k]);
   }
   std::vector<std::vector<Candidate>> found(all.size());
   parallel_for(int(all.size()), 1, [&](int k) {

@@ -13,6 +13,7 @@
 
 #include "datasets/neighbours/kd_tree.h"
 #include "datasets/types/parallel.h"
+#include "datasets/types/widest_gap.h"
 
 namespace sketchsplat {
 namespace {
@@ -304,16 +305,10 @@ class Cylinders {
 
   // What is left of a turn without the widest gap [rad].
   double arc(const Cylinder& c, const std::vector<int>& on) const {
-    const Vector3d u = c.axis.unitOrthogonal(), v = c.axis.cross(u);
-    std::vector<double> at;
-    for (const int i : on) {
-      const Vector3d from = c.from_axis(set_.center(i));
-      at.push_back(std::atan2(from.dot(v), from.dot(u)));
-    }
-    std::sort(at.begin(), at.end());
-    double gap = at.front() + 2 * M_PI - at.back();
-    for (size_t k = 1; k < at.size(); ++k) gap = std::max(gap, at[k] - at[k - 1]);
-    return 2 * M_PI - gap;
+    Eigen::Matrix3Xd out(3, Eigen::Index(on.size()));
+    for (size_t k = 0; k < on.size(); ++k)
+      out.col(Eigen::Index(k)) = c.from_axis(set_.center(on[k]));
+    return 2 * M_PI - widest_gap(out, c.axis);
   }
 
   const double spacing_;
