@@ -26,9 +26,7 @@ std::vector<int> pieces_of(int points, double piece_px) {
 // A closed curve less than so far across.
 bool is_small(const CurvePoints& curve, double most) {
   const Eigen::Matrix3Xd& p = curve.position;
-  const double step = (p.col(1) - p.col(0)).norm();
-  return (p.col(0) - p.col(p.cols() - 1)).norm() < 2 * step &&
-         (p.col(0) - p.col(p.cols() / 2)).norm() < most;
+  return closes(curve) && (p.col(0) - p.col(p.cols() / 2)).norm() < most;
 }
 
 // Sums of a likelihood ratio over views: those that must show the edge, and others.

@@ -26,9 +26,8 @@ constexpr double kSharp = 0.6;          // share of a step that the filter may r
 constexpr double kInside = 0.8;         // of the way to the centre of curvature, that copies may go
 constexpr int kTurn = 3;                // points before and after, that tell the curvature
 constexpr int kPiece = 24, kEvery = 2;  // points of which copies tell the clutter of a view
-constexpr size_t kFewestSquares = 100;  // readings of copies
-constexpr double kMedianOfSquare = 0.455;  // of a normal variable
-constexpr double kLeastNoise = 0.3;        // [grey levels of 255] of whole numbers alone
+constexpr size_t kFewestReadings = 100;  // readings of copies
+constexpr double kLeastNoise = 0.3;      // [grey levels of 255] of whole numbers alone
 
 using Taps = std::array<float, 2 * kSide + 1>;  // grey values across; NaN: unknown
 
@@ -163,11 +162,9 @@ ContrastReading reading(const Sums& s, double noise, double clutter) {
 Turn turn_at(const View& v, const CurvePoints& curve, int i, const Eigen::Vector2d& q,
              const Eigen::Vector2d& across) {
   const int n = int(curve.position.cols());
-  const bool closed = (curve.position.col(0) - curve.position.col(n - 1)).norm() <
-                      2 * (curve.position.col(1) - curve.position.col(0)).norm();
   const int step = std::min(kTurn, std::max(1, n / 8));
   int a = i - step, c = i + step;
-  if (closed) a = (a + n) % n, c %= n;
+  if (closes(curve)) a = (a + n) % n, c %= n;
   if (a < 0 || c >= n) return Turn(q, q, q, across);
   double depth;
   const Eigen::Vector2d before = v.project(curve.position.col(a), &depth);
@@ -219,7 +216,7 @@ double noise_of(const EdgelMap& map) { return std::max<double>(map.noise, kLeast
 double clutter_of(const EdgeWorld& world, int view, const CurvePoints& strokes,
                   const Image<uint8_t>& near) {
   const double noise = noise_of(world.maps[view]);
-  std::vector<double> squares;
+  std::vector<double> readings;
   double mean_noise = 0;
   for (size_t s = 0; s + 1 < strokes.first.size(); ++s) {
     const int last = strokes.first[s + 1];
@@ -228,14 +225,14 @@ double clutter_of(const EdgeWorld& world, int view, const CurvePoints& strokes,
           read_piece(world, view, strokes, at, std::min(at + kPiece, last), {near}, kEvery);
       for (int o = -kReach; o <= kReach; ++o)
         if (std::abs(o) >= kNearCopy && sums.tells(o)) {
-          squares.push_back(sums.mean(o) * sums.mean(o));
+          readings.push_back(std::abs(sums.mean(o)));
           mean_noise += noise * noise / sums.count[o + kReach];
         }
     }
   }
-  if (squares.size() < kFewestSquares) return NAN;
-  mean_noise /= double(squares.size());
-  return std::max(0.0, median(std::move(squares)) / kMedianOfSquare - mean_noise);
+  if (readings.size() < kFewestReadings) return NAN;
+  mean_noise /= double(readings.size());
+  return std::max(0.0, std::pow(normal_sigma(std::move(readings)), 2) - mean_noise);
 }
 
 void mark_around(double x, double y, uint8_t ways, Image<uint8_t>* near) {

@@ -113,6 +113,11 @@ double robust_sigma(const std::vector<SampleMatch>& matches) {
 
 }  // namespace
 
+bool closes(const CurvePoints& curve) {
+  const Eigen::Matrix3Xd& p = curve.position;
+  return (p.col(0) - p.col(p.cols() - 1)).norm() < 2 * (p.col(1) - p.col(0)).norm();
+}
+
 double pull_of_blur(double curvature, double blur) {
   constexpr double kNothing = 0.75;  // blur over the radius at which nothing is left
   const double bend = curvature * blur, share = bend / kNothing;

@@ -18,6 +18,10 @@ struct CurvePoints {
   Eigen::Matrix3Xd curvature = {};
 };
 
+/// Whether the points of one curve, two or more that are equally far apart, go around: the last is
+/// next to the first.
+bool closes(const CurvePoints& curve);
+
 /// By how much the steepest place of a disc's edge lies nearer to its centre when it is blurred by
 /// a Gaussian, both in px; `curvature`: 1 / radius [1 / px], not negative. To first order curvature
 /// blur^2 / 2; within 0.02 blur of the exact place (the maximum of the gradient's magnitude, a

@@ -60,8 +60,7 @@ CurvePoints moved_aside(const CurvePoints& points, int number, double px) {
   const double golden = M_PI * (3 - std::sqrt(5.0));
   const double z = 1 - 2 * std::fmod((number + 0.5) * 0.618033988749895, 1.0);
   const Eigen::Matrix3Xd& p = points.position;
-  const bool closed = (p.col(0) - p.col(p.cols() - 1)).norm() < 2 * px;
-  const double size = closed ? (p.col(0) - p.col(p.cols() / 2)).norm() : 0;
+  const double size = closes(points) ? (p.col(0) - p.col(p.cols() / 2)).norm() : 0;
   const double r = std::sqrt(1 - z * z);
   const double far = std::min(size, kMostAsidePx * px) + px * (kNearAsidePx + number % kAsides);
   CurvePoints out = points;
