@@ -2,12 +2,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "sketches/curve/conic.h"
 #include "sketches/fit/fit.h"
 #include "sketches/fit/refine.h"
+#include "sketches/fit/right_singular.h"
 
 namespace sketchsplat {
 namespace {
@@ -83,12 +83,11 @@ bool direct_ellipse(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Eigen::V
 }  // namespace
 
 bool start_ellipse(const Normalised& n, ControlPoints* c) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(n.points.transpose(), Eigen::ComputeThinV);
-  if (!(svd.singularValues()[1] > (1e-8 + 10 * n.resolution) * svd.singularValues()[0]))
-    return false;
-  const Eigen::Matrix<double, 3, 2> plane = svd.matrixV().leftCols(2);
+  const RightSingular<3> svd = right_singular<3>(n.points.transpose());
+  if (!(svd.values[1] > (1e-8 + 10 * n.resolution) * svd.values[0])) return false;
+  const Eigen::Matrix<double, 3, 2> plane = svd.vectors.leftCols(2);
   // Both directions to the same spread first: the direct fit is not good at slender points.
-  const Eigen::Vector2d unit = svd.singularValues().head(2) / std::sqrt(double(n.points.cols()));
+  const Eigen::Vector2d unit = svd.values.head(2) / std::sqrt(double(n.points.cols()));
   const Eigen::Matrix2Xd flat = unit.cwiseInverse().asDiagonal() * (plane.transpose() * n.points);
   Eigen::Vector2d centre;
   Eigen::Matrix2d axes;

@@ -4,6 +4,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -133,10 +134,11 @@ class Session {
   std::string serve() const {
     for (char order; recv(ends_[1], &order, 1, 0) == 1;) {
       end_after(0.2);
-      read_or_refuse([&] { read_step(path_); });
+      std::optional<Brep> brep;
+      read_or_refuse([&] { brep = read_step(path_); });
       send(ends_[1], "g", 1, MSG_NOSIGNAL);
       end_after(5);
-      read_or_refuse([&] { read_cad_part(path_, 1); });
+      if (brep) read_or_refuse([&] { cad_part_of(*brep, path_, 1); });
       send(ends_[1], "d", 1, MSG_NOSIGNAL);
     }
     return "";

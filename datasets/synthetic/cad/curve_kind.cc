@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sketches/fit/right_singular.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -76,12 +78,12 @@ bool is_circular(const Matrix3Xd& p, double tolerance, CurveShape* shape) {
 
 // The conic through planar points (x, y) by least squares: x^2, xy, y^2, x, y, 1.
 Eigen::Matrix<double, 6, 1> fit_conic(const Eigen::Matrix2Xd& q) {
-  Eigen::MatrixXd rows(q.cols(), 6);
+  Eigen::Matrix<double, Eigen::Dynamic, 6> rows(q.cols(), 6);
   for (Eigen::Index i = 0; i < q.cols(); ++i) {
     const double x = q(0, i), y = q(1, i);
     rows.row(i) << x * x, x * y, y * y, x, y, 1;
   }
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(rows, Eigen::ComputeFullV).matrixV().col(5);
+  return right_singular<6>(rows).vectors.col(5);
 }
 
 // Half-axes as columns, the longer one first; false if the conic is no ellipse.

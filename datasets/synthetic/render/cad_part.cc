@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/synthetic/render/cad_part.h"
 
+#include <utility>
+
 #include "datasets/synthetic/render/visibility.h"
 #include "datasets/types/errors.h"
 #include "datasets/types/parallel.h"
@@ -27,9 +29,13 @@ Eigen::Vector3d outward_near(const TruthCurve& curve, const Eigen::Vector3d& poi
 }  // namespace
 
 CadPart read_cad_part(const std::string& path, double smooth_angle_deg) {
+  return cad_part_of(read_step(path), path, smooth_angle_deg);
+}
+
+CadPart cad_part_of(Brep brep, const std::string& path, double smooth_angle_deg) {
   CadPart part;
   part.path = path;
-  part.brep = read_step(path);
+  part.brep = std::move(brep);
   part.frame = unit_frame(part.brep, path);
   const Truth unit = sharp_edges(part.brep, part.frame, smooth_angle_deg);
   if (unit.curves.empty()) throw InputError(path, "a part with sharp edges", "none");

@@ -25,6 +25,9 @@ struct CadPart {
 /// Reads a STEP file. Throws InputError (see read_step; no sharp edge).
 CadPart read_cad_part(const std::string& path, double smooth_angle_deg);
 
+/// The same of what read_step made of the file.
+CadPart cad_part_of(Brep brep, const std::string& path, double smooth_angle_deg);
+
 /// By how many of the views (in the file's frame, [mm]) each of the `points` (3 x N [mm]) of an
 /// edge of the part is seen: inside of the picture, nothing before it. `strokes`: of each point,
 /// the stroke of edges.sketch that it lies on.
