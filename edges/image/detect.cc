@@ -11,6 +11,7 @@
 
 #include "datasets/types/median.h"
 #include "edges/image/chain.h"
+#include "edges/image/coarser.h"
 #include "edges/image/gradient.h"
 #include "edges/image/meaningful.h"
 
@@ -19,6 +20,7 @@ namespace {
 
 // Grey levels of 255 per px: where an edge starts, and down to where it goes on, without noise.
 constexpr double kHighFloor = 1.5, kLowFloor = 0.6;
+constexpr double kScale = M_SQRT2;  // from one scale to the next coarser one
 constexpr double kPedestal = 0.5;  // contrast between object and background where alpha is the mask
 
 // The part of the picture that can hold edges, as one channel.
@@ -172,6 +174,36 @@ void mark_outline(const Image<float>& alpha, EdgelMap* map) {
   }
 }
 
+// White noise of variance 1 has gradient variance 1 / (8 pi sigma^4) by component.
+double noise_of_gradient(double noise, double sigma_px) {
+  return noise / (std::sqrt(8 * M_PI) * sigma_px * sigma_px);
+}
+
+// Edgels of one scale, in pixels of the composite, into a map that knows the noise.
+void detect_at(const Composite& c, double beyond_px, const DetectOptions& options, EdgelMap* map) {
+  const Gradient g = gradient_of(c.value, options.sigma_px);
+  const double noise = noise_of_gradient(map->noise, options.sigma_px);
+  const float low = float(std::max(kLowFloor / 255, options.low_sigma * noise));
+  const float high = float(std::max(kHighFloor / 255, options.high_sigma * noise));
+  chain_edgels(find_candidates(g, low), high, options.min_chain, true, map);
+  keep_meaningful(g.magnitude, outline_band(c, options.sigma_px, beyond_px), options.meaning, map);
+}
+
+// Coarser scales show fainter edges, for noise averages out; not where the floor was the threshold.
+void detect_coarser(const Composite& c, double beyond_px, const DetectOptions& options,
+                    EdgelMap* map) {
+  DetectOptions at = options;
+  for (int k = 0; k < options.coarser; ++k) {
+    if (at.high_sigma * noise_of_gradient(map->noise, at.sigma_px) < kHighFloor / 255) return;
+    at.sigma_px *= kScale;
+    at.min_chain = int(std::ceil(options.min_chain * at.sigma_px / options.sigma_px));
+    EdgelMap found;
+    found.noise = map->noise;
+    detect_at(c, beyond_px, at, &found);
+    add_coarser(std::move(found), at.sigma_px, options.sigma_px, at.min_chain, map);
+  }
+}
+
 }  // namespace
 
 EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
@@ -181,14 +213,8 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   if (c.value.rows < 3 || c.value.cols < 3) return map;
   map.noise = measure_noise(c);
   map.grey = grey_part(c);
-  const Gradient g = gradient_of(c.value, options.sigma_px);
-  // White noise of variance 1 has gradient variance 1 / (8 pi sigma^4) by component.
-  const double unit = 1.0 / (std::sqrt(8 * M_PI) * options.sigma_px * options.sigma_px);
-  const float low = float(std::max(kLowFloor / 255, options.low_sigma * unit * map.noise));
-  const float high = float(std::max(kHighFloor / 255, options.high_sigma * unit * map.noise));
-  chain_edgels(find_candidates(g, low), high, options.min_chain, true, &map);
-  keep_meaningful(g.magnitude, outline_band(c, options.sigma_px, picture.beyond_px),
-                  options.meaning, &map);
+  detect_at(c, picture.beyond_px, options, &map);
+  detect_coarser(c, picture.beyond_px, options, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
   map.blur = median_width(map);
   if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);

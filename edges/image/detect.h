@@ -36,12 +36,12 @@ struct EdgelMap {
   /// Per chain, minus the decimal logarithm of the number of chains like it that texture would make
   /// in this image; empty if nobody judged it, see meaningful.h.
   std::vector<float> meaning;
-  float noise = 0;            ///< measured noise of the image, grey values in [0, 1]
+  float noise = 0;  ///< measured noise of the image, grey values in [0, 1]
   /// [px] median width of the edgels of a picture: what the camera and the detector blur it by; 0
   /// if they are of something else, or nobody knows.
   float blur = 0;
-  Image<uint8_t> mask;        ///< 1 on the object, 0 elsewhere, in pixels of the image, never
-                              ///< undistorted; empty if the image has no alpha
+  Image<uint8_t> mask;  ///< 1 on the object, 0 elsewhere, in pixels of the image, never
+                        ///< undistorted; empty if the image has no alpha
   /// In pixels of the image, never undistorted; null unless edgels are those of a picture.
   std::shared_ptr<const GreyPart> grey;
 
@@ -85,7 +85,8 @@ struct MeaningOptions {
 };
 
 struct DetectOptions {
-  double sigma_px = 1.0;    ///< [px] smoothing of the gradient
+  double sigma_px = 1.0;  ///< [px] smoothing of the gradient
+  int coarser = 2;        ///< further scales, each sqrt(2) times the last, where noise hides edges
   double high_sigma = 7.0;  ///< an edge starts at this many standard deviations of the noise
   double low_sigma = 3.0;   ///< and is followed down to this many
   int min_chain = 6;        ///< [px] shorter chains are dropped
@@ -94,7 +95,8 @@ struct DetectOptions {
 };
 
 /// Edgels of a picture: Gaussian gradient, hysteresis at thresholds that follow the noise measured
-/// in this picture, position at the maximum along the normal. Alpha, if any, is the mask: its
+/// in this picture, position at the maximum along the normal; where a scale shows none, of coarser
+/// ones. Alpha, if any, is the mask: its
 /// outline is an edge, and colours outside it do not exist. An empty picture gives an empty map.
 EdgelMap detect_edges(const Picture& picture, const DetectOptions& options);
 

@@ -6,6 +6,7 @@
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "edges/image/pull_of_blur.h"
 
 namespace sketchsplat {
 namespace {
@@ -116,12 +117,6 @@ double robust_sigma(const std::vector<SampleMatch>& matches) {
 bool closes(const CurvePoints& curve) {
   const Eigen::Matrix3Xd& p = curve.position;
   return (p.col(0) - p.col(p.cols() - 1)).norm() < 2 * (p.col(1) - p.col(0)).norm();
-}
-
-double pull_of_blur(double curvature, double blur) {
-  constexpr double kNothing = 0.75;  // blur over the radius at which nothing is left
-  const double bend = curvature * blur, share = bend / kNothing;
-  return share < 1 ? blur * bend / 2 * (1 - share * share * share * share) : 0;
 }
 
 Eigen::Vector3d distance_gradient(const EdgeWorld& world, const SampleMatch& match,

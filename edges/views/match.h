@@ -22,13 +22,6 @@ struct CurvePoints {
 /// next to the first.
 bool closes(const CurvePoints& curve);
 
-/// By how much the steepest place of a disc's edge lies nearer to its centre when it is blurred by
-/// a Gaussian, both in px; `curvature`: 1 / radius [1 / px], not negative. To first order curvature
-/// blur^2 / 2; within 0.02 blur of the exact place (the maximum of the gradient's magnitude, a
-/// Bessel function I_1 times a Gaussian) up to a radius of 1.4 blur; 0 below, where little is left
-/// of the disc.
-double pull_of_blur(double curvature, double blur);
-
 struct MatchOptions {
   double reach_px = 1.5;  ///< [px] largest distance across the edge
   double angle_deg = 15;  ///< [deg] largest angle between the edgel's plane and the tangent

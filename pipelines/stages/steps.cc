@@ -17,7 +17,8 @@ Step step(const std::string& name, T* value) {
 }
 
 std::vector<Step> method_steps(ReconstructOptions* o) {
-  return {step("conics", &o->segment.conics),
+  return {step("coarse-scales", &o->detect.coarser),
+          step("conics", &o->segment.conics),
           step("rewrite", &o->rechain.on),
           step("silhouettes", &o->silhouettes),
           step("visibility", &o->optimize.visibility),

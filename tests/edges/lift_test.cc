@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "edges/image/detect.h"
+#include "edges/image/pull_of_blur.h"
 #include "edges/views/link.h"
 #include "edges/views/match.h"
 #include "tests/support/strokes.h"
