@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "edges/views/unexplained.h"
 #include "sketches/curve/curve.h"
@@ -324,6 +325,17 @@ Sibling FamilyFit::fit(Sibling sibling) const {
   return sibling;
 }
 
+namespace {
+
+// Of one picture; above 0.
+float median_strength(const std::vector<Edgel>& edgels) {
+  std::vector<float> strengths;
+  for (const Edgel& e : edgels) strengths.push_back(e.strength);
+  return strengths.empty() ? 1.f : std::max(median(std::move(strengths)), 1e-6f);
+}
+
+}  // namespace
+
 double FamilyFit::explained(const Sketch& sketch, double reach_px) const {
   const SampleLayout layout = plan_samples(sketch, 2 * world_.footprint);
   const Samples samples = evaluate_samples(sketch, layout);
@@ -332,19 +344,20 @@ double FamilyFit::explained(const Sketch& sketch, double reach_px) const {
                                  [](const Stroke& s) { return s.kind != StrokeKind::kLine; });
   ExplainOptions explain;
   explain.reach_px = reach_px;
-  std::vector<long> flagged(views_.size()), all(views_.size());
+  std::vector<double> flagged(views_.size()), all(views_.size());
   parallel_for(int(views_.size()), 1, [&](int k) {
     const std::vector<Edgel>& edgels = world_.maps[views_[k]].edgels;
     std::vector<char> flags(edgels.size());
     explain_in_view(world_, views_[k], points, explain, &flags);
+    const float usual = median_strength(edgels);
     for (size_t e = 0; e < edgels.size(); ++e) {
-      flagged[k] += flags[e];
-      all[k] += flags[e] || !(round && edgels[e].outline);
+      const double weight = std::min(1.f, edgels[e].strength / usual);
+      if (flags[e]) flagged[k] += weight;
+      if (flags[e] || !(round && edgels[e].outline)) all[k] += weight;
     }
   });
-  const long total = std::accumulate(all.begin(), all.end(), 0L);
-  return total > 0 ? double(std::accumulate(flagged.begin(), flagged.end(), 0L)) / double(total)
-                   : 0;
+  const double total = std::accumulate(all.begin(), all.end(), 0.0);
+  return total > 0 ? std::accumulate(flagged.begin(), flagged.end(), 0.0) / total : 0;
 }
 
 }  // namespace sketchsplat

@@ -38,8 +38,10 @@ class FamilyFit {
 
   Sketch sketch(const Sibling& sibling) const;
 
-  /// Share of the edgels that lie along its strokes, within `reach_px`. Outlines that lie along
-  /// none do not count if some stroke is curved: round surfaces have contours that are no edges.
+  /// Share of the edgels that lie along its strokes, within `reach_px`; those fainter than the
+  /// median of their picture count less, shading is no sign of another part. Outlines that lie
+  /// along none do not count if some stroke is curved: round surfaces have contours that are no
+  /// edges.
   double explained(const Sketch& sketch, double reach_px = 2) const;
 
  private:

@@ -103,7 +103,7 @@ TEST_F(Program, AStepIsLeftOutByItsNameAndAnOptionThatIsGoneNamesWhatReplacesIt)
   const std::string work = "reconstruct " + scene() + " --dry-run --out " + in_folder("dry");
   EXPECT_EQ(run(work + " --without conics,surfel-merge --without close").status, 0);
   for (const auto& [given, answer] : std::vector<std::pair<std::string, std::string>>{
-           {"--without conic", "--without: expected none or some of conics, rewrite, "},
+           {"--without conic", "--without: expected none or some of coarse-scales, conics, rewrite, "},
            {"--without none,conics", "got 'none'"},
            {"--no-conics", "unknown option --no-conics, replaced by --without conics (see "},
            {"--surfel-planes 0", "replaced by --without surfel-planes "},

@@ -167,7 +167,7 @@ TEST_F(Completion, OfBashKnowsVerbsOptionsChoicesAndFolders) {
   EXPECT_THAT(offers("sketchsplat --th"), testing::ElementsAre("--threads"));
   EXPECT_THAT(offers("sketchsplat batch --shar"), testing::ElementsAre("--shard"));
   EXPECT_THAT(offers("sketchsplat reconstruct x --no-inf"), testing::ElementsAre("--no-inferred"));
-  EXPECT_THAT(offers("sketchsplat reconstruct x --without co"), testing::ElementsAre("conics"));
+  EXPECT_THAT(offers("sketchsplat reconstruct x --without con"), testing::ElementsAre("conics"));
   EXPECT_THAT(offers("sketchsplat reconstruct x --preset ''"),
               testing::ElementsAre("fast", "balanced", "accurate"));
   EXPECT_THAT(offers("sketchsplat reconstruct x --detector ma"), testing::ElementsAre("maps:"));
