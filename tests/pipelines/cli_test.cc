@@ -103,7 +103,8 @@ TEST_F(Program, AStepIsLeftOutByItsNameAndAnOptionThatIsGoneNamesWhatReplacesIt)
   const std::string work = "reconstruct " + scene() + " --dry-run --out " + in_folder("dry");
   EXPECT_EQ(run(work + " --without conics,surfel-merge --without close").status, 0);
   for (const auto& [given, answer] : std::vector<std::pair<std::string, std::string>>{
-           {"--without conic", "--without: expected none or some of coarse-scales, conics, rewrite, "},
+           {"--without conic",
+            "--without: expected none or some of coarse-scales, conics, rewrite, "},
            {"--without none,conics", "got 'none'"},
            {"--no-conics", "unknown option --no-conics, replaced by --without conics (see "},
            {"--surfel-planes 0", "replaced by --without surfel-planes "},
@@ -246,8 +247,8 @@ TEST_F(Program, MapsLieOverTheImageWhateverTheLensAndMasksMayComeFromElsewhere) 
             0);
   EXPECT_GT(read_grey(map).at(31, 24), 0.3f) << "the mask ends here";
   EXPECT_EQ(read_grey(map).at(47, 24), 0) << "and this is outside";
-  const Outcome o = run("detect " + model.string() + " --masks " + pictures + "/none -o " +
-                        in_folder("result"));
+  const Outcome o =
+      run("detect " + model.string() + " --masks " + pictures + "/none -o " + in_folder("result"));
   EXPECT_EQ(o.status, kBadInput);
   EXPECT_THAT(o.err, HasSubstr("expected a folder of masks, found nothing"));
 }
