@@ -18,7 +18,8 @@
 namespace sketchsplat {
 namespace {
 
-// Grey levels of 255 per px: where an edge starts, and down to where it goes on, without noise.
+// Grey levels of 255 per px: where an edge starts, and down to where it goes on, without noise,
+// see steps_left.
 constexpr double kHighFloor = 1.5, kLowFloor = 0.6;
 constexpr double kScale = M_SQRT2;  // from one scale to the next coarser one
 constexpr double kPedestal = 0.5;  // contrast between object and background where alpha is the mask
@@ -82,19 +83,33 @@ std::shared_ptr<const GreyPart> grey_part(const Composite& c) {
   return std::make_shared<const GreyPart>(std::move(part));
 }
 
-float measure_noise(const Composite& c) {
+float measure_noise(const cv::Mat1f& value, const cv::Mat1b& inside) {
   std::vector<float> r;
-  r.reserve(size_t(c.value.rows) * c.value.cols / 2);
-  for (int y = 1; y + 1 < c.value.rows; y += 1)
-    for (int x = 1 + y % 2; x + 1 < c.value.cols; x += 2) {
-      const float *a = c.value[y - 1] + x, *b = c.value[y] + x, *d = c.value[y + 1] + x;
-      const uchar *ia = c.inside[y - 1] + x, *id = c.inside[y + 1] + x;
+  r.reserve(size_t(value.rows) * value.cols / 2);
+  for (int y = 1; y + 1 < value.rows; y += 1)
+    for (int x = 1 + y % 2; x + 1 < value.cols; x += 2) {
+      const float *a = value[y - 1] + x, *b = value[y] + x, *d = value[y + 1] + x;
+      const uchar *ia = inside[y - 1] + x, *id = inside[y + 1] + x;
       if (!(ia[-1] && ia[1] && id[-1] && id[1])) continue;
       r.push_back(std::abs(a[-1] - 2 * a[0] + a[1] - 2 * (b[-1] - 2 * b[0] + b[1]) + d[-1] -
                            2 * d[0] + d[1]));
     }
   if (r.size() < 16) return 0;
   return median(std::move(r)) / (0.6745f * 6.f);
+}
+
+struct Noise {
+  double fine = 0;    // of pixels, grey values in [0, 1]
+  double coarse = 0;  // of white noise that is as strong as this in squares of 2 x 2 pixels
+};
+
+Noise measure_noise(const Composite& c) {
+  cv::Mat1f value;
+  cv::Mat1b inside;
+  cv::resize(c.value, value, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+  cv::resize(c.inside, inside, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+  inside = inside == 255;
+  return {measure_noise(c.value, c.inside), 2.0 * measure_noise(value, inside)};
 }
 
 // Pixels whose gradient the end of the mask makes, or that of an object which ends up to
@@ -179,28 +194,50 @@ double noise_of_gradient(double noise, double sigma_px) {
   return noise / (std::sqrt(8 * M_PI) * sigma_px * sigma_px);
 }
 
-// Edgels of one scale, in pixels of the composite, into a map that knows the noise.
-void detect_at(const Composite& c, double beyond_px, const DetectOptions& options, EdgelMap* map) {
-  const Gradient g = gradient_of(c.value, options.sigma_px);
-  const double noise = noise_of_gradient(map->noise, options.sigma_px);
-  const float low = float(std::max(kLowFloor / 255, options.low_sigma * noise));
-  const float high = float(std::max(kHighFloor / 255, options.high_sigma * noise));
-  chain_edgels(find_candidates(g, low), high, options.min_chain, true, map);
-  keep_meaningful(g.magnitude, outline_band(c, options.sigma_px, beyond_px), options.meaning, map);
+// Grey levels are whole numbers, so slow shading becomes steps, which thresholds have to exceed;
+// but noise dithers them: on the mean the steps of a quantizer of step 1 are as high as
+// exp(-2 pi^2 n^2) after noise of standard deviation n (Widrow, Kollar: Quantization noise, 2008),
+// and quantizing by itself is noise of variance 1 / 12. Not so after compression, where noise is
+// not white: it leaves steps of its own.
+double steps_left(const Noise& noise) {
+  constexpr double kWhite = 2;  // the ratio is 0.9 to 1.3 for white noise, 3 to 4.4 in photographs
+  if (noise.coarse > kWhite * noise.fine) return 1;
+  const double levels = 255 * noise.fine, own = std::max(levels * levels - 1.0 / 12, 0.0);
+  return std::exp(-2 * M_PI * M_PI * own);
+}
+
+// What a picture is searched for edges with.
+struct Search {
+  DetectOptions options;
+  double beyond_px = 0;  // see Picture
+  double noise = 0;      // as if it were white, grey values in [0, 1]
+  double floor = 1;      // of kHighFloor and kLowFloor
+
+  double sigma_of_gradient() const { return noise_of_gradient(noise, options.sigma_px); }
+};
+
+// Edgels of one scale, in pixels of the composite.
+void detect_at(const Composite& c, const Search& search, EdgelMap* map) {
+  const DetectOptions& o = search.options;
+  const Gradient g = gradient_of(c.value, o.sigma_px);
+  const double noise = search.sigma_of_gradient(), floor = search.floor / 255;
+  const float low = float(std::max(kLowFloor * floor, o.low_sigma * noise));
+  const float high = float(std::max(kHighFloor * floor, o.high_sigma * noise));
+  chain_edgels(find_candidates(g, low), high, o.min_chain, true, map);
+  keep_meaningful(g.magnitude, outline_band(c, o.sigma_px, search.beyond_px), o.meaning, map);
 }
 
 // Coarser scales show fainter edges, for noise averages out; not where the floor was the threshold.
-void detect_coarser(const Composite& c, double beyond_px, const DetectOptions& options,
-                    EdgelMap* map) {
-  DetectOptions at = options;
-  for (int k = 0; k < options.coarser; ++k) {
-    if (at.high_sigma * noise_of_gradient(map->noise, at.sigma_px) < kHighFloor / 255) return;
-    at.sigma_px *= kScale;
-    at.min_chain = int(std::ceil(options.min_chain * at.sigma_px / options.sigma_px));
+void detect_coarser(const Composite& c, const Search& finest, EdgelMap* map) {
+  const DetectOptions& o = finest.options;
+  Search at = finest;
+  for (int k = 0; k < o.coarser; ++k) {
+    if (o.high_sigma * at.sigma_of_gradient() < kHighFloor * at.floor / 255) return;
+    at.options.sigma_px *= kScale;
+    at.options.min_chain = int(std::ceil(o.min_chain * at.options.sigma_px / o.sigma_px));
     EdgelMap found;
-    found.noise = map->noise;
-    detect_at(c, beyond_px, at, &found);
-    add_coarser(std::move(found), at.sigma_px, options.sigma_px, at.min_chain, map);
+    detect_at(c, at, &found);
+    add_coarser(std::move(found), at.options.sigma_px, o.sigma_px, at.options.min_chain, map);
   }
 }
 
@@ -211,10 +248,12 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   map.width = picture.width(), map.height = picture.height();
   const Composite c = composite(picture, options);
   if (c.value.rows < 3 || c.value.cols < 3) return map;
-  map.noise = measure_noise(c);
+  const Noise noise = measure_noise(c);
+  map.noise = float(noise.fine);
   map.grey = grey_part(c);
-  detect_at(c, picture.beyond_px, options, &map);
-  detect_coarser(c, picture.beyond_px, options, &map);
+  const Search search = {options, picture.beyond_px, noise.fine, steps_left(noise)};
+  detect_at(c, search, &map);
+  detect_coarser(c, search, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
   map.blur = median_width(map);
   if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);

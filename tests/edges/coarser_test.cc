@@ -32,6 +32,13 @@ Picture picture_of(double contrast, double noise, Share share) {
 
 bool right_half(double x, double) { return x > kMiddle; }
 
+// Grey levels as files have them.
+Picture in_whole_levels(Picture p) {
+  for (float& v : p.red.data) v = std::round(v * 255) / 255;
+  p.green = p.blue = p.red;
+  return p;
+}
+
 DetectOptions finest_alone() {
   DetectOptions options;
   options.coarser = 0;
@@ -57,6 +64,30 @@ TEST(Coarser, LeavesAPictureAloneWhereNoNoiseHidesAnything) {
   const EdgelMap all = detect_edges(step, {}), fine = detect_edges(step, finest_alone());
   ASSERT_EQ(all.edgels.size(), fine.edgels.size());
   for (size_t i = 0; i < all.edgels.size(); ++i) EXPECT_EQ(all.edgels[i].x, fine.edgels[i].x);
+}
+
+TEST(Coarser, ShowsAStepOfTwoGreyLevelsInTheNoiseThatDithersThem) {
+  const Picture step = in_whole_levels(picture_of(2, 0.5, right_half));
+  EXPECT_GT(edgels_near_middle(detect_edges(step, {})), 7 * kSide / 10u);
+}
+
+// A ramp has a step of one grey level every 16 px.
+TEST(Coarser, StepsOfGreyLevelsAreNoEdges) {
+  const auto ramp = [](double x, double y) { return (0.8 * x + 0.6 * y) / 16; };
+  EXPECT_EQ(detect_edges(in_whole_levels(picture_of(1, 0, ramp)), {}).edgels.size(), 0u);
+  EXPECT_LT(detect_edges(in_whole_levels(picture_of(1, 0.5, ramp)), {}).edgels.size(), 10u);
+}
+
+// Noise that compression made coarse, of squares of 2 x 2 pixels, promises nothing of steps.
+TEST(Coarser, NoiseThatIsNotWhiteLowersNoThreshold) {
+  Picture step = in_whole_levels(picture_of(2, 0.6, right_half));
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const float other = step.red.at(x & ~1, y & ~1);
+      step.green.at(x, y) = step.blue.at(x, y) = other;
+    }
+  step.red = step.blue;
+  EXPECT_LT(detect_edges(step, {}).edgels.size(), kSide / 10u);
 }
 
 // A scale of 2 px shows a disc of 10 px smaller by 0.2 px, and its edge twice as wide.
