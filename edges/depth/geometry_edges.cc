@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "edges/depth/geometry_edges.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "edges/depth/geometry_places.h"
 #include "edges/depth/geometry_sides.h"
 #include "edges/image/chain.h"
+#include "edges/image/edgel_parabola.h"
 #include "edges/image/gradient.h"
 
 namespace sketchsplat {
@@ -265,23 +265,16 @@ void smooth_chains(EdgelMap* map) {
   for (int c = 0; c < map->num_chains(); ++c)
     for (int i = map->chain[c]; i < map->chain[c + 1]; ++i) {
       const Edgel& e = raw[i];
-      Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-      Vector3d b = Vector3d::Zero();
+      EdgelParabola parabola(e, kReach);
       bool straight = true;
-      int n = 0;
       for (int k = std::max(map->chain[c], i - kNeighbours);
            k <= std::min(map->chain[c + 1] - 1, i + kNeighbours); ++k) {
-        const double dx = raw[k].x - e.x, dy = raw[k].y - e.y;
-        const double t = (-dx * e.ny + dy * e.nx) / kReach, d = dx * e.nx + dy * e.ny;
-        if (std::abs(t) > 1) continue;
+        if (std::abs(parabola.place(raw[k]).x()) > 1) continue;
         straight &= std::abs(e.nx * raw[k].nx + e.ny * raw[k].ny) > 0.8;
-        const Vector3d basis(1, t, t * t);
-        A += basis * basis.transpose();
-        b += basis * d;
-        ++n;
+        parabola.add(raw[k]);
       }
-      if (n < 6 || !straight) continue;  // no parabola through corners
-      const double shift = A.ldlt().solve(b)[0];
+      if (parabola.count() < 6 || !straight) continue;  // no parabola through corners
+      const double shift = parabola.coefficients()[0];
       if (!(std::abs(shift) < kMost)) continue;
       map->edgels[i].x += float(shift * e.nx), map->edgels[i].y += float(shift * e.ny);
     }

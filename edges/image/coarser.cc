@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "edges/image/coarser.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "datasets/types/median.h"
+#include "edges/image/edgel_parabola.h"
 #include "edges/image/pull_of_blur.h"
 
 namespace sketchsplat {
@@ -16,27 +16,21 @@ namespace {
 constexpr double kOwn = 1.5;     // [sigmas] about a finer edgel, where a coarser scale sees it, too
 constexpr double kReach = 4;     // [sigmas] of a chain to either side that tell how it bends
 constexpr int kLeast = 5;        // edgels that tell it
-constexpr double kWidest = 1.6;  // times the median of the finest scale
+constexpr double kWidest = 1.6;  // times the median of finer scales
 
 // Curvature of a chain about one of its edgels [1 / px], positive if it turns towards the normal:
 // that of the parabola through what lies within `reach_px`.
 double bend_at(const EdgelMap& map, int chain, int at, double reach_px) {
-  const Edgel& o = map.edgels[at];
-  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  int n = 0;
+  EdgelParabola parabola(map.edgels[at], 1);
   const auto add = [&](const Edgel& e) {
-    const double dx = e.x - o.x, dy = e.y - o.y;
-    if (dx * dx + dy * dy > reach_px * reach_px) return false;
-    const double along = -dx * o.ny + dy * o.nx;
-    const Eigen::Vector3d row(1, along, along * along);
-    A += row * row.transpose(), b += row * (dx * o.nx + dy * o.ny), ++n;
+    if (parabola.place(e).squaredNorm() > reach_px * reach_px) return false;
+    parabola.add(e);
     return true;
   };
   for (int k = at; k < map.chain[chain + 1] && add(map.edgels[k]);) ++k;
   for (int k = at - 1; k >= map.chain[chain] && add(map.edgels[k]);) --k;
-  if (n < kLeast) return 0;
-  const Eigen::Vector3d x = A.ldlt().solve(b);
+  if (parabola.count() < kLeast) return 0;
+  const Eigen::Vector3d x = parabola.coefficients();
   return 2 * x[2] / std::pow(1 + x[1] * x[1], 1.5);
 }
 

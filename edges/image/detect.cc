@@ -200,7 +200,7 @@ double noise_of_gradient(double noise, double sigma_px) {
 // and quantizing by itself is noise of variance 1 / 12. Not so after compression, where noise is
 // not white: it leaves steps of its own.
 double steps_left(const Noise& noise) {
-  constexpr double kWhite = 2;  // the ratio is 0.9 to 1.3 for white noise, 3 to 4.4 in photographs
+  constexpr double kWhite = 2;  // white noise has a ratio of 1, what JPEG left of it a larger one
   if (noise.coarse > kWhite * noise.fine) return 1;
   const double levels = 255 * noise.fine, own = std::max(levels * levels - 1.0 / 12, 0.0);
   return std::exp(-2 * M_PI * M_PI * own);
