@@ -7,10 +7,7 @@
 
 namespace sketchsplat {
 
-/// Singular values, largest first, and right singular vectors, as columns, of a matrix with few
-/// columns: those of the R of its QR decomposition with pivots. Eigen's own way to them
-/// (JacobiSVD of a matrix with more rows than columns) frees its preconditioner twice where memory
-/// runs out in it. With fewer rows than columns the values that are missing are 0.
+/// Singular values, largest first, and right singular vectors, as columns.
 template <int Columns>
 struct RightSingular {
   using Square = Eigen::Matrix<double, Columns, Columns>;
@@ -18,6 +15,9 @@ struct RightSingular {
   Square vectors;
 };
 
+/// Those of a matrix with few columns: of the R of its QR decomposition with pivots. Eigen's own
+/// way to them (JacobiSVD of a matrix with more rows than columns) frees its preconditioner twice
+/// where memory runs out in it. With fewer rows than columns the values that are missing are 0.
 template <int Columns>
 RightSingular<Columns> right_singular(const Eigen::Matrix<double, Eigen::Dynamic, Columns>& rows) {
   using Square = typename RightSingular<Columns>::Square;
