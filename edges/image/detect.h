@@ -96,8 +96,8 @@ struct DetectOptions {
 
 /// Edgels of a picture: Gaussian gradient, hysteresis at thresholds that follow the noise measured
 /// in this picture, position at the maximum along the normal; where a scale shows none, of coarser
-/// ones. Alpha, if any, is the mask: its
-/// outline is an edge, and colours outside it do not exist. An empty picture gives an empty map.
+/// ones. Alpha, if any, is the mask: its outline is an edge, and colours outside it do not exist.
+/// An empty picture gives an empty map.
 EdgelMap detect_edges(const Picture& picture, const DetectOptions& options);
 
 /// Edge map in [0, 1] for people and rasterizers: a ridge of `sigma_px` along every edgel.
