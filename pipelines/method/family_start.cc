@@ -87,7 +87,7 @@ Freed set_free(const Sketch& fitted, const EdgeWorld& world, const ReconstructOp
   std::vector<bool> holds(fitted.nodes.cols());  // node of a free stroke
   for (int s = 0; s < fitted.size(); ++s) {
     const Stroke& stroke = fitted.strokes[s];
-    out.free.push_back(o.strokes[s].views >= options.select.min_views &&
+    out.free.push_back(o.strokes[s].views >= options.select.sure_views &&
                        o.strokes[s].cover > kFreeCover && moved[s] < kMostMoved);
     for (const int n : {stroke.begin, stroke.end})
       if (n >= 0 && out.free[s]) holds[n] = true;

@@ -15,7 +15,7 @@ struct FamilyStart {
 
 /// The part in the views, by its siblings (options.like): the member of their family that fits
 /// best, every stroke then moved onto its own edgels and judged as ever, but that siblings have it
-/// counts in its favour. Strokes that fewer than options.select.min_views views see stay with the
+/// counts in its favour. Strokes that fewer than options.select.sure_views views see stay with the
 /// family. The part is none of it, and the report says so, if too many of its edgels lie on no
 /// stroke, or too many strokes on no edgels. Throws InputError.
 FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,

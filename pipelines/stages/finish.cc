@@ -50,7 +50,7 @@ StrokeObservation with_evidence(const EdgeWorld& world, const ReconstructOptions
   match.reach_px = 1.0;
   match.quadratics = false;
   StrokeObservation o = with_strokes(observe(*sketch, world, match, options.polish.spacing_px),
-                                     world, options.select.min_views);
+                                     world, options.select.sure_views);
   record_evidence(o, world, match.reach_px, sketch);
   return o;
 }

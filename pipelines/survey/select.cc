@@ -114,10 +114,11 @@ double edge_nats(double nothing, double round, double round_odds) {
   return least - std::log(std::exp(least - nothing) + round_odds * std::exp(least - round));
 }
 
-double odds_of_edge(const std::vector<double>& nats) {
+double odds_of_edge(const std::vector<double>& nats, bool rare) {
   constexpr double kEdges = 1, kAccidents = 5;  // known beforehand: few strokes say little
+  const double odds = most_probable_odds(nats, kEdges, kAccidents);
   // Among many accidents, what the views show must do.
-  return std::max(most_probable_odds(nats, kEdges, kAccidents), 1.0);
+  return rare ? odds : std::max(odds, 1.0);
 }
 
 const char* verdict_name(Verdict verdict) {
@@ -135,7 +136,8 @@ class Greedy {
         world_(world),
         options_(options),
         match_(match_options(sketch, world)),
-        o_(with_strokes(observe(sketch, world, match_, kSpacing), world, options.min_views)),
+        sure_(std::max(options.sure_views, options.min_views)),
+        o_(with_strokes(observe(sketch, world, match_, kSpacing), world, sure_)),
         every_(observe(sketch, world, lone(match_), kSpacing)),
         judge_(world, every_, match_.reach_px, o_.matches.sigma_px, options.evidence),
         wide_(observe_rounds(sketch, world, match_.reach_px)),
@@ -152,17 +154,20 @@ class Greedy {
                      [&](int a, int b) { return o_.strokes[a].matches > o_.strokes[b].matches; });
   }
 
-  // Best supported first. `edge_odds`: of an edge to nothing, beforehand.
-  Selection choose(double edge_odds) {
+  // Best supported first. Odds of an edge to nothing, beforehand.
+  Selection choose(double edge_odds, double rare_odds) {
     owned_ = explained_ = of_rims_;
     log_odds_ = std::log(edge_odds);
+    log_rare_odds_ = std::log(rare_odds);
     Selection result;
     result.edge_odds = edge_odds;
+    result.rare_odds = rare_odds;
     result.round_odds = round_odds_;
     result.verdicts.resize(sketch_.size());
     result.stats = o_.strokes;
     result.nats.resize(sketch_.size());
     ratios_.assign(sketch_.size(), NAN);
+    rare_.assign(sketch_.size(), 0);
     std::vector<bool> keep(sketch_.size());
     for (const int i : order_) {
       result.verdicts[i] = judge(i, &result);
@@ -180,17 +185,18 @@ class Greedy {
     return result;
   }
 
-  // [nat] Likelihood ratios of an edge to nothing, of the strokes that were judged by the views in
-  // the last choice and are not known from elsewhere.
-  std::vector<double> ratios() const {
+  // [nat] Likelihood ratios of an edge to nothing, of the strokes, rare or not, that were judged by
+  // the views in the last choice and are not known from elsewhere.
+  std::vector<double> ratios(bool rare) const {
     std::vector<double> out;
     for (int i = 0; i < sketch_.size(); ++i)
-      if (!known(i) && !std::isnan(ratios_[i])) out.push_back(ratios_[i]);
+      if (!known(i) && !std::isnan(ratios_[i]) && bool(rare_[i]) == rare) out.push_back(ratios_[i]);
     return out;
   }
 
  private:
-  static constexpr double kSpacing = 2;  // [px] of samples
+  static constexpr double kSpacing = 2;   // [px] of samples
+  static constexpr int kViewsOfLine = 2;  // that make it, whatever they see
 
   static MatchOptions match_options(const Sketch& sketch, const EdgeWorld& world) {
     MatchOptions match;
@@ -218,24 +224,36 @@ class Greedy {
     if (rim_[i]) return Verdict::kRound;
     if (o_.strokes[i].length_px < options_.min_length_px) return Verdict::kShort;
     // Where two edges run side by side, the better one has explained its edgels already.
-    const double places = own_cover(o_, i, options_.min_views, owned_) * o_.strokes[i].samples;
+    const int views = claim(o_, i, owned_);
     Verdict verdict;
-    if (!known(i) &&
-        (claim(o_, i, owned_) < options_.min_views || kOutlierNats * places < price(i)))
+    if (known(i) || (views >= options_.min_views && is_worth_it(i, views)))
+      verdict = judge_by(owned_, i, views, result);
+    else
       verdict =
           judge_.nats(i, nullptr) > options_.least_nats ? Verdict::kRedundant : Verdict::kUnlikely;
-    else
-      verdict = judge_by(owned_, i, result);
-    if (verdict != Verdict::kKept && (known(i) || claim(o_, i, explained_) >= options_.min_views))
-      verdict = judge_by(explained_, i, result);
-    return verdict;
+    if (verdict == Verdict::kKept) return verdict;
+    const int lone = claim(o_, i, explained_);
+    return known(i) || lone >= options_.min_views ? judge_by(explained_, i, lone, result) : verdict;
   }
 
-  // By the edgels that are no others'.
-  Verdict judge_by(const EdgelFlags& others, int i, Selection* result) {
-    result->stats[i] = summarise(world_, o_, i, options_.min_views, &others);
+  int needed(int i, int views) const { return is_rare(i, views) ? options_.min_views : sure_; }
+  bool is_rare(int i, int views) const { return !known(i) && views < sure_; }
+
+  // What it alone explains would cost more without it.
+  bool is_worth_it(int i, int views) const {
+    const double places = own_cover(o_, i, needed(i, views), owned_) * o_.strokes[i].samples;
+    return kOutlierNats * places >= price(i);
+  }
+
+  // By the edgels that are no others', which so many views show.
+  Verdict judge_by(const EdgelFlags& others, int i, int views, Selection* result) {
+    result->stats[i] = summarise(world_, o_, i, needed(i, views), &others);
+    rare_[i] = is_rare(i, views);
     ratios_[i] = judge_.nats(i, &others);
-    const double edge = ratios_[i] + (known(i) ? options_.prior[i] : log_odds_);
+    if (rare_[i] && sketch_.strokes[i].kind == StrokeKind::kLine && ratios_[i] > 0)
+      ratios_[i] *= std::max(0, views - kViewsOfLine) / double(std::max(1, views));
+    const double odds = rare_[i] ? log_rare_odds_ : log_odds_;
+    const double edge = ratios_[i] + (known(i) ? options_.prior[i] : odds);
     const double no_round = -rounds_.nats(i, &others);
     result->nats[i] = edge_nats(edge, no_round, round_odds_);
     if (result->nats[i] > options_.least_nats) return Verdict::kKept;
@@ -246,6 +264,7 @@ class Greedy {
   const EdgeWorld& world_;
   const SelectOptions& options_;
   const MatchOptions match_;
+  const int sure_;
   const StrokeObservation o_;
   const Observation every_;
   const StrokeJudge judge_;
@@ -259,8 +278,9 @@ class Greedy {
   const double round_odds_;
   // Of the strokes that were chosen so far, and of rims.
   EdgelFlags owned_, explained_;
-  double log_odds_ = 0;
+  double log_odds_ = 0, log_rare_odds_ = 0;
   std::vector<double> ratios_;  // [nat] of an edge to nothing; NaN: not judged
+  std::vector<char> rare_;      // of those that were judged
 };
 
 }  // namespace
@@ -268,9 +288,10 @@ class Greedy {
 Selection select_strokes(const Sketch& sketch, const EdgeWorld& world,
                          const SelectOptions& options) {
   Greedy greedy(sketch, world, options);
-  if (options.edge_odds > 0) return greedy.choose(options.edge_odds);
-  greedy.choose(1);  // which tells the likelihood ratios of what no better stroke explains
-  return greedy.choose(odds_of_edge(greedy.ratios()));
+  greedy.choose(1, 1);  // which tells the likelihood ratios of what no better stroke explains
+  const double rare_odds = odds_of_edge(greedy.ratios(true), true);
+  return greedy.choose(
+      options.edge_odds > 0 ? options.edge_odds : odds_of_edge(greedy.ratios(false)), rare_odds);
 }
 
 }  // namespace sketchsplat

@@ -11,7 +11,10 @@
 namespace sketchsplat {
 
 struct SelectOptions {
-  int min_views = 4;            ///< that must see a stroke by edgels no better stroke explains
+  int min_views = 3;  ///< that must see a stroke by edgels no better stroke explains
+  /// Strokes that fewer see are rare: they have odds of their own, beforehand, and of the views
+  /// that see a rare line two make it, so that only the others are evidence.
+  int sure_views = 4;
   double least_nats = 0;        ///< [nat] logarithm of its likelihood ratio, see likelihood.h
   double min_length_px = 4.0;   ///< [px]
   double price = 3;             ///< [nat] of a parameter, see SegmentOptions
@@ -47,12 +50,13 @@ double edge_nats(double nothing, double round, double round_odds);
 
 /// Odds of an edge to an accident before the views are asked, under which these likelihood ratios
 /// [nat] of a scene's strokes are likeliest: expectation and maximization, from one edge and
-/// five accidents; at least 1. In clean pictures hardly any stroke is an accident, and edges that
-/// few views show, as those of pockets, may stay.
-double odds_of_edge(const std::vector<double>& nats);
+/// five accidents; at least 1 but for rare strokes. In clean pictures hardly any stroke is an
+/// accident, and edges that few views show, as those of pockets, may stay.
+double odds_of_edge(const std::vector<double>& nats, bool rare = false);
 
 struct Selection : PassResult {
   double edge_odds = 0;            ///< that were used
+  double rare_odds = 0;            ///< the same of rare strokes: as these strokes have it
   double round_odds = 0;           ///< that were used
   std::vector<Verdict> verdicts;   ///< one per stroke that came in
   std::vector<StrokeStats> stats;  ///< what the verdicts rest on

@@ -144,6 +144,8 @@ TEST(Select, OddsOfEdgesAreThoseUnderWhichTheLikelihoodRatiosWereDrawn) {
   EXPECT_NEAR(odds_of_edge(std::vector<double>(99, 50)), 20, 1e-3);
   EXPECT_LT(odds_of_edge(std::vector<double>(12, 50)), 3) << "few strokes say little";
   EXPECT_NEAR(odds_of_edge(std::vector<double>(9, -50)), 1, 1e-3) << "never less";
+  EXPECT_NEAR(odds_of_edge(std::vector<double>(9, -50), true), 1 / 14.0, 1e-3)
+      << "but of rare ones";
   // Of normal likelihood ratios: mean half the variance.
   std::mt19937 rng(3);
   std::normal_distribution<double> normal(0, 3);
@@ -175,19 +177,53 @@ TEST(Select, WhatIsUnlikelyByItselfMayStayWhereNoStrokeIsAnAccident) {
   EXPECT_NEAR(all.nats[rare], alone.nats[rare] + std::log(all.edge_odds), 1e-6);
 }
 
+// A cube, of which every second view shows the strokes beyond its edges, `seeing` views in all.
+EdgeWorld with_rare_lines(int views, int seeing, const Sketch& s) {
+  return world_of(views, [&](int i, const View&) {
+    std::vector<Polyline> seen = polylines_of(cube());
+    for (int k = int(seen.size()); k < s.size() && i % 2 == 0 && i / 2 < seeing; ++k)
+      seen.push_back(polyline_of(s, k));
+    return seen;
+  });
+}
+
 TEST(Select, AStrokeThatTooFewViewsSeeIsNotKept) {
   const SelectOptions options;
   Sketch s = cube();
   const int rare = add_line(&s, {0.3, 0.5, 0.4}, {0.7, 0.6, 0.6});
   for (int seeing : {options.min_views - 1, options.min_views + 4}) {
-    const EdgeWorld w = world_of(20, [&](int i, const View&) {
-      std::vector<Polyline> seen = polylines_of(cube());
-      if (i % 2 == 0 && i / 2 < seeing) seen.push_back(polyline_of(s, rare));
-      return seen;
-    });
+    const EdgeWorld w = with_rare_lines(20, seeing, s);
     const Verdict verdict = select_strokes(s, w, options).verdicts[rare];
     EXPECT_EQ(verdict == Verdict::kKept, seeing >= options.min_views) << seeing << " views";
   }
+}
+
+TEST(Select, ThreeViewsOfSixShowEdgesAndThreeOfManyDoNot) {
+  Sketch s = cube();
+  for (const double y : {0.3, 0.5, 0.7}) add_line(&s, {0.3, y, 0.4}, {0.7, y + 0.1, 0.6});
+  for (const int views : {6, 40}) {
+    const Selection out = select_strokes(s, with_rare_lines(views, 3, s), {});
+    for (int i = 12; i < s.size(); ++i)
+      EXPECT_EQ(out.verdicts[i] == Verdict::kKept, views == 6)
+          << i << " of " << views << " views, " << out.nats[i] << " nat";
+  }
+}
+
+TEST(Select, OfThreeViewsThatShowALineTwoMakeItAndItsOddsAreThoseOfRareOnes) {
+  Sketch s = cube();
+  const int rare = add_line(&s, {0.3, 0.5, 0.4}, {0.7, 0.6, 0.6});
+  const EdgeWorld w = with_rare_lines(8, 3, s);
+  SelectOptions options;
+  options.round.least_radius_px = 1e6;  // what tells of rounds is another matter
+  options.edge_odds = 1;
+  options.sure_views = 3;
+  const Selection sure = select_strokes(s, w, options);
+  options.sure_views = 4;
+  const Selection few = select_strokes(s, w, options);
+  ASSERT_GT(sure.nats[rare], 0);
+  EXPECT_NEAR(few.nats[rare], sure.nats[rare] / 3 + std::log(few.rare_odds), 1e-6);
+  EXPECT_LT(few.rare_odds, 1) << "one stroke alone says little";
+  EXPECT_EQ(few.nats[0], sure.nats[0]);
 }
 
 TEST(Select, AStrokeStaysIfWhatItAloneExplainsIsWorthItsParameters) {
