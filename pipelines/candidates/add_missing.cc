@@ -95,7 +95,7 @@ bool is_rim(const EdgeWorld& world, const CurvePoints& points, double least) {
 
 std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& world,
                                       const EdgelFlags& explained, const KnownCurves& known,
-                                      const ContrastJudge& judge, int* depths) {
+                                      const ContrastJudge& judge, int ring_views, int* depths) {
   const double tolerance = kLevelPx * world.footprint;
   const std::vector<Levels> levels = find_levels(sketch, tolerance);
   // Of what several tell the first counts: that which knows from where it is seen.
@@ -104,7 +104,7 @@ std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& wor
     if (c.group < 0) settle(levels, tolerance, &c);
   for (const std::vector<Candidate>& more :
        {level_copies(sketch, levels), mirror_copies(sketch, levels),
-        circle_patterns(sketch, tolerance), level_rings(levels, world, explained)})
+        circle_patterns(sketch, tolerance), level_rings(levels, world, explained, ring_views)})
     for (const Candidate& c : more) {
       out.push_back(c);
       settle(levels, tolerance, &out.back());
@@ -186,12 +186,12 @@ Seen seen_at_best(const Candidate& c, const CurvePoints& moved, const ContrastJu
 
 // `refused`: candidates of passes before that nothing spoke for; these are added.
 Judged judged(const Sketch& sketch, const EdgeWorld& world, const EdgelFlags& explained,
-              const ContrastJudge& judge, std::vector<CurvePoints>* refused) {
+              const ContrastJudge& judge, int ring_views, std::vector<CurvePoints>* refused) {
   const double px = world.footprint;
   const KnownCurves known(sketch, px, kKnownPx * px);
   Judged out;
   const std::vector<Candidate> all =
-      all_candidates(sketch, world, explained, known, judge, &out.depths);
+      all_candidates(sketch, world, explained, known, judge, ring_views, &out.depths);
   if (int(all.size()) > kMostCandidates) return out;
   for (const Candidate& c : all) {
     const CurvePoints points = candidate_points(c, px);
@@ -239,7 +239,7 @@ Judged judged(const Sketch& sketch, const EdgeWorld& world, const EdgelFlags& ex
 // One pass over all candidates.
 class Pass {
  public:
-  Pass(const Sketch& sketch, const EdgeWorld& world, const MissingOptions& options,
+  Pass(const Sketch& sketch, const EdgeWorld& world, const MissingOptions& options, int ring_views,
        std::vector<CurvePoints>* refused)
       : sketch_(sketch),
         world_(world),
@@ -247,7 +247,7 @@ class Pass {
         strokes_(points_on(sketch, world.footprint)),
         explained_(explained_by(strokes_, world)),
         judge_(world, strokes_, explained_, options.contrast),
-        all_(judged(sketch, world, explained_, judge_, refused)),
+        all_(judged(sketch, world, explained_, judge_, ring_views, refused)),
         least_(alarm_threshold(all_.nulls, all_.candidates.size() + size_t(all_.refused),
                                options.false_strokes / kPasses)),
         least_of_group_(kGroup * std::log((all_.depths + double(all_.groups.size())) * kPasses /
@@ -356,15 +356,18 @@ MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
                          const MissingOptions& options) {
   MissingEdges out{sketch, {}, {}, {}, 0};
   std::vector<CurvePoints> refused;
-  // What was found leads to expect more: the other rim of a hole that is part of a pattern.
+  // What was found leads to expect more: the other rim of a hole that is part of a pattern. In a
+  // plane that is known two views tell a circle, but there are so many of these that others would
+  // have to be likelier beside them: they come last.
+  int ring_views = 3;
   for (int pass = 0; pass < kPasses; ++pass) {
-    const MissingEdges more = Pass(out.sketch, world, options, &refused).run();
+    const MissingEdges more = Pass(out.sketch, world, options, ring_views, &refused).run();
     out.sketch = more.sketch;
     out.nats.insert(out.nats.end(), more.nats.begin(), more.nats.end());
     out.group.insert(out.group.end(), more.group.begin(), more.group.end());
     out.corners.insert(out.corners.end(), more.corners.begin(), more.corners.end());
     out.candidates += more.candidates;
-    if (more.nats.empty()) break;
+    if (more.nats.empty() && --ring_views < 2) break;
   }
   drop_covered(sketch.size(), world.footprint, &out);
   return out;

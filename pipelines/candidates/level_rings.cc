@@ -22,8 +22,7 @@ constexpr double kMostGap = 2.6;      // [rad] of the circle without an edgel
 constexpr double kLeastRadiusPx = 2;  // [footprints]
 constexpr double kMostRadiusPx = 40;  // [footprints]: larger ones are matched as others are
 constexpr double kSamePx = 1.5;       // [footprints] of centres and radii of one circle
-constexpr int kFewestViews = 3;
-constexpr size_t kMostRings = 2000;  // in one level; a texture of rings tells nothing
+constexpr size_t kMostRings = 2000;   // in one level; a texture of rings tells nothing
 
 using Level = Eigen::Hyperplane<double, 3>;
 
@@ -79,7 +78,7 @@ bool agree(const Ring& a, const Ring& b, double reach) {
 }
 
 // What most views agree on, again and again without these.
-void add_agreed(std::vector<Ring> rings, const Level& level, double reach,
+void add_agreed(std::vector<Ring> rings, const Level& level, double reach, int fewest_views,
                 std::vector<Candidate>* out) {
   while (true) {
     std::vector<size_t> best;
@@ -94,7 +93,7 @@ void add_agreed(std::vector<Ring> rings, const Level& level, double reach,
       }
       if (views > most) most = views, best = like;
     }
-    if (most < kFewestViews) return;
+    if (most < fewest_views) return;
     Candidate c{StrokeKind::kCircle, {}};
     std::vector<double> value[4];
     for (const size_t k : best) {
@@ -112,7 +111,7 @@ void add_agreed(std::vector<Ring> rings, const Level& level, double reach,
 }  // namespace
 
 std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
-                                   const EdgelFlags& explained) {
+                                   const EdgelFlags& explained, int fewest_views) {
   std::vector<std::vector<Chain>> chains;
   for (size_t v = 0; v < world.maps.size(); ++v)
     chains.push_back(free_chains(world.maps[v], explained[v]));
@@ -133,7 +132,7 @@ std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const Edge
           rings.push_back(ring);
         }
     if (rings.size() <= kMostRings)
-      add_agreed(std::move(rings), all[k], kSamePx * world.footprint, &found[k]);
+      add_agreed(std::move(rings), all[k], kSamePx * world.footprint, fewest_views, &found[k]);
   });
   std::vector<Candidate> out;
   for (const std::vector<Candidate>& f : found) out.insert(out.end(), f.begin(), f.end());

@@ -73,7 +73,7 @@ TEST(Candidates, CopiesSettleInTheLevelsThatLargeStrokesTell) {
 
 // The plate, and three holes of which edgels tell: one in its top, one 0.1 below, one that two
 // views see.
-TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevel) {
+TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevelOrTwoIfAsked) {
   const auto rim = [](const Vector3d& c) {
     return test::circle(c, 0.03 * Vector3d::UnitX(), 0.03 * Vector3d::UnitY());
   };
@@ -89,6 +89,14 @@ TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevel) {
   EXPECT_EQ(rings[0].kind, StrokeKind::kCircle);
   EXPECT_LT((rings[0].curve.p[0] - in_top).norm(), 0.1 * world.footprint);
   EXPECT_NEAR(rings[0].curve.p[1].norm(), 0.03, 0.1 * world.footprint);
+  const std::vector<Candidate> more_rings = level_rings({levels[0]}, world, no_edgels(world), 2);
+  const auto has = [&](const Vector3d& centre) {
+    return std::any_of(more_rings.begin(), more_rings.end(), [&](const Candidate& c) {
+      return (c.curve.p[0] - centre).norm() < 0.1 * world.footprint;
+    });
+  };
+  EXPECT_TRUE(has(in_top));
+  EXPECT_TRUE(has(seldom));
   EdgelFlags explained = no_edgels(world);
   for (std::vector<char>& view : explained) std::fill(view.begin(), view.end(), 1);
   EXPECT_TRUE(level_rings({levels[0]}, world, explained).empty());
