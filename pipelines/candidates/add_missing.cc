@@ -33,6 +33,7 @@ constexpr int kAsides = 7;
 constexpr double kMostAsidePx = 30;         // [px] further, of closed ones
 constexpr int kNulls = 80, kMostNulls = 8;  // copies that tell a threshold; of one candidate
 constexpr int kPasses = 3;
+constexpr int kRingViews = 3, kFewestRingViews = 2;  // that agree on a ring, at first and at last
 constexpr int kMostCandidates = 8000;  // a sketch that leads to expect more tells nothing
 constexpr double kGroup = 2;           // times the nats of one, that all of a group must have
 constexpr double kWholeShare = 0.9;    // of one of a group that is known as a whole
@@ -359,7 +360,7 @@ MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
   // What was found leads to expect more: the other rim of a hole that is part of a pattern. In a
   // plane that is known two views tell a circle, but there are so many of these that others would
   // have to be likelier beside them: they come last.
-  int ring_views = 3;
+  int ring_views = kRingViews;
   for (int pass = 0; pass < kPasses; ++pass) {
     const MissingEdges more = Pass(out.sketch, world, options, ring_views, &refused).run();
     out.sketch = more.sketch;
@@ -367,7 +368,7 @@ MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
     out.group.insert(out.group.end(), more.group.begin(), more.group.end());
     out.corners.insert(out.corners.end(), more.corners.begin(), more.corners.end());
     out.candidates += more.candidates;
-    if (more.nats.empty() && --ring_views < 2) break;
+    if (more.nats.empty() && --ring_views < kFewestRingViews) break;
   }
   drop_covered(sketch.size(), world.footprint, &out);
   return out;

@@ -12,6 +12,6 @@ namespace sketchsplat {
 /// small holes, of which edgels are too few to match them without their plane. Of every direction
 /// in the eight levels that hold the most strokes. `explained`: edgels that tell of something else.
 std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
-                                   const EdgelFlags& explained, int fewest_views = 3);
+                                   const EdgelFlags& explained, int fewest_views);
 
 }  // namespace sketchsplat

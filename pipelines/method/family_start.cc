@@ -154,6 +154,7 @@ ReconstructOptions options_after(const FamilyStart& family, ReconstructOptions o
   if (family.sketch.size() == 0) return options;
   options.rounds = 0;
   options.final_polish = options.final_polish && family.all_free;
+  options.select.min_views = std::max(options.select.min_views, options.select.sure_views);
   return options;
 }
 

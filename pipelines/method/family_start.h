@@ -19,10 +19,10 @@ struct FamilyStart {
 /// family. The part is none of it, and the report says so, if too many of its edgels lie on no
 /// stroke, or too many strokes on no edgels. Throws InputError.
 FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,
-                           RunReport* report, Progress* progress);
+                                RunReport* report, Progress* progress);
 
 /// The options for what follows: what siblings know needs no rounds, and what no view sees no
-/// polish.
+/// polish. What siblings lack and few views show is rather an accident.
 ReconstructOptions options_after(const FamilyStart& family, ReconstructOptions options);
 
 }  // namespace sketchsplat

@@ -106,8 +106,6 @@ SelectOptions select_options(const ReconstructOptions& options) {
   SelectOptions select = options.select;
   select.price = options.segment.price;
   select.place_sigma_px = options.rechain.sigma_px;
-  // Siblings know what few views show: what they lack is rather an accident.
-  if (!options.like.empty()) select.min_views = std::max(select.min_views, select.sure_views);
   // Surfels say less exactly than pictures where an edge is.
   const bool surfels = options.detector == "2dgs-sn";
   if (surfels)

@@ -84,7 +84,7 @@ TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevelOrTwoIfAsked) {
   const EdgeWorld more = test::ideal_world(views, {rim(seldom), rim(in_top), rim(below)});
   for (const size_t v : {size_t(0), size_t(1)}) world.maps[v] = more.maps[v];
   const std::vector<Levels> levels = find_levels(plate(), kTolerance);
-  const std::vector<Candidate> rings = level_rings({levels[0]}, world, no_edgels(world));
+  const std::vector<Candidate> rings = level_rings({levels[0]}, world, no_edgels(world), 3);
   ASSERT_EQ(rings.size(), 1);
   EXPECT_EQ(rings[0].kind, StrokeKind::kCircle);
   EXPECT_LT((rings[0].curve.p[0] - in_top).norm(), 0.1 * world.footprint);
@@ -99,7 +99,7 @@ TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevelOrTwoIfAsked) {
   EXPECT_TRUE(has(seldom));
   EdgelFlags explained = no_edgels(world);
   for (std::vector<char>& view : explained) std::fill(view.begin(), view.end(), 1);
-  EXPECT_TRUE(level_rings({levels[0]}, world, explained).empty());
+  EXPECT_TRUE(level_rings({levels[0]}, world, explained, 3).empty());
 }
 
 // As on a natural surface, where every stroke is a level of its own.

@@ -68,7 +68,7 @@ TEST(FamilyStart, AShaftIsFollowedThoughTheContoursOfItsCylindersAreNoEdges) {
 
 TEST(FamilyStart, APartOfAnotherKindIsReconstructedAsWithoutSiblings) {
   const TempFolder scene, siblings;
-  write_scene(synthesize(part_options("box-hole", 1, 8)), scene.path());
+  write_scene(synthesize(part_options("box-hole", 1, 6)), scene.path());
   ReconstructOptions options;
   const Sketch cold = reconstruct(open_scene(scene.path()), options, nullptr).sketch;
   options.like = write_siblings("l-bracket", siblings);
