@@ -21,6 +21,7 @@ struct MissingEdges {
   std::vector<double> nats;  ///< of each that was added
   std::vector<bool> group;   ///< of each: was it added as one of many that are there or not?
   std::vector<Eigen::Vector3d> corners;  ///< where those of groups end, but on known strokes
+  std::vector<ControlPoints> rings;      ///< circles of groups
   int candidates = 0;                    ///< that were judged
 };
 
@@ -28,7 +29,8 @@ struct MissingEdges {
 /// candidate is added if its likelihood ratio outweighs the number of candidates over the false
 /// strokes that are tolerated, if its pieces are shown, not a part of it alone, and if copies of it
 /// that are moved aside say less: best first, and each takes what it explains from the others.
-/// Floor and walls of a pocket, or the walls of a hole, are there or not, all together.
+/// Floor and walls of a pocket, the walls of a hole, or the holes of a bolt circle are there or
+/// not, all together.
 MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
                          const MissingOptions& options);
 

@@ -9,6 +9,11 @@
 
 namespace sketchsplat {
 
+const std::vector<Window>& windows_of(const Candidate& candidate) {
+  static const std::vector<Window> none;
+  return candidate.windows ? *candidate.windows : none;
+}
+
 CurvePoints candidate_points(const Candidate& candidate, double spacing) {
   constexpr int kFirst = 16;
   double length = 0;

@@ -21,8 +21,15 @@ struct Candidate {
   bool floor = false;  ///< of a group: at a depth at which the pictures show most
 };
 
+/// The openings of a candidate, none if nobody knows.
+const std::vector<Window>& windows_of(const Candidate& candidate);
+
 /// Points along a candidate, at most `spacing` (world units) apart, at least two.
 CurvePoints candidate_points(const Candidate& candidate, double spacing);
+
+/// [footprints] from a stroke of what is known already; share of a candidate that makes it so, and
+/// that makes one of a group known as a whole.
+inline constexpr double kKnownPx = 2.5, kKnownShare = 0.4, kWholeShare = 0.9;
 
 /// The places where strokes run.
 class KnownCurves {

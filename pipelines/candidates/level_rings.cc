@@ -77,41 +77,61 @@ bool agree(const Ring& a, const Ring& b, double reach) {
   return std::abs(a.radius - b.radius) < reach && (a.centre - b.centre).norm() < reach;
 }
 
+// Of each ring those that agree with it, itself too, in order of views.
+std::vector<std::vector<int>> agreeing(const std::vector<Ring>& rings, double reach) {
+  std::vector<std::vector<int>> out(rings.size());
+  for (size_t i = 0; i < rings.size(); ++i)
+    for (size_t k = 0; k < rings.size(); ++k)
+      if (agree(rings[i], rings[k], reach)) out[i].push_back(int(k));
+  return out;
+}
+
+LevelRing median_ring(const std::vector<Ring>& rings, const std::vector<int>& of, int views,
+                      const Vector3d& normal) {
+  std::vector<double> value[4];
+  for (const int k : of) {
+    for (int d = 0; d < 3; ++d) value[d].push_back(rings[k].centre[d]);
+    value[3].push_back(rings[k].radius);
+  }
+  LevelRing out;
+  out.views = views;
+  out.ring.kind = StrokeKind::kCircle;
+  out.ring.curve.count = 2;
+  for (int d = 0; d < 3; ++d) out.ring.curve.p[0][d] = median(value[d]);
+  out.ring.curve.p[1] = median(value[3]) * normal;
+  return out;
+}
+
 // What most views agree on, again and again without these.
-void add_agreed(std::vector<Ring> rings, const Level& level, double reach, int fewest_views,
-                std::vector<Candidate>* out) {
+std::vector<LevelRing> agreed(const std::vector<Ring>& rings, const Vector3d& normal,
+                              double reach) {
+  const std::vector<std::vector<int>> agreeing_with = agreeing(rings, reach);
+  std::vector<char> gone(rings.size(), 0);
+  std::vector<LevelRing> out;
   while (true) {
-    std::vector<size_t> best;
+    std::vector<int> best;
     int most = 0;
-    for (const Ring& ring : rings) {
-      std::vector<size_t> like;
+    for (size_t i = 0; i < rings.size(); ++i) {
+      if (gone[i]) continue;
+      std::vector<int> like;
       int views = 0;
-      for (size_t k = 0; k < rings.size(); ++k) {
-        if (!agree(ring, rings[k], reach)) continue;
-        views += like.empty() || rings[like.back()].view != rings[k].view;  // in order of views
+      for (const int k : agreeing_with[i]) {
+        if (gone[k]) continue;
+        views += like.empty() || rings[like.back()].view != rings[k].view;
         like.push_back(k);
       }
       if (views > most) most = views, best = like;
     }
-    if (most < fewest_views) return;
-    Candidate c{StrokeKind::kCircle, {}};
-    std::vector<double> value[4];
-    for (const size_t k : best) {
-      for (int d = 0; d < 3; ++d) value[d].push_back(rings[k].centre[d]);
-      value[3].push_back(rings[k].radius);
-    }
-    c.curve.count = 2;
-    for (int d = 0; d < 3; ++d) c.curve.p[0][d] = median(value[d]);
-    c.curve.p[1] = median(value[3]) * level.normal();
-    out->push_back(c);
-    for (size_t k = best.size(); k-- > 0;) rings.erase(rings.begin() + std::ptrdiff_t(best[k]));
+    if (most == 0) return out;
+    out.push_back(median_ring(rings, best, most, normal));
+    for (const int k : best) gone[k] = 1;
   }
 }
 
 }  // namespace
 
-std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
-                                   const EdgelFlags& explained, int fewest_views) {
+std::vector<LevelRing> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
+                                   const EdgelFlags& explained) {
   std::vector<std::vector<Chain>> chains;
   for (size_t v = 0; v < world.maps.size(); ++v)
     chains.push_back(free_chains(world.maps[v], explained[v]));
@@ -121,7 +141,7 @@ std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const Edge
     for (size_t k = 0; k < l.height.size(); ++k)
       if (main[k]) all.emplace_back(l.normal, -l.height[k]);
   }
-  std::vector<std::vector<Candidate>> found(all.size());
+  std::vector<std::vector<LevelRing>> found(all.size());
   parallel_for(int(all.size()), 1, [&](int k) {
     std::vector<Ring> rings;
     Ring ring;
@@ -132,10 +152,10 @@ std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const Edge
           rings.push_back(ring);
         }
     if (rings.size() <= kMostRings)
-      add_agreed(std::move(rings), all[k], kSamePx * world.footprint, fewest_views, &found[k]);
+      found[k] = agreed(rings, all[k].normal(), kSamePx * world.footprint);
   });
-  std::vector<Candidate> out;
-  for (const std::vector<Candidate>& f : found) out.insert(out.end(), f.begin(), f.end());
+  std::vector<LevelRing> out;
+  for (const std::vector<LevelRing>& f : found) out.insert(out.end(), f.begin(), f.end());
   return out;
 }
 

@@ -8,10 +8,16 @@
 
 namespace sketchsplat {
 
-/// Circles in the known levels that chains of edgels in at least `fewest_views` views agree on:
-/// small holes, of which edgels are too few to match them without their plane. Of every direction
-/// in the eight levels that hold the most strokes. `explained`: edgels that tell of something else.
-std::vector<Candidate> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
-                                   const EdgelFlags& explained, int fewest_views);
+/// A circle in a known level, and the number of views whose chains of edgels agree on it.
+struct LevelRing {
+  Candidate ring;
+  int views = 0;
+};
+
+/// Circles in the known levels: small holes, of which edgels are too few to match them without
+/// their plane. Of every direction in the eight levels that hold the most strokes; those of a level
+/// that most views agree on first. `explained`: edgels that tell of something else.
+std::vector<LevelRing> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
+                                   const EdgelFlags& explained);
 
 }  // namespace sketchsplat

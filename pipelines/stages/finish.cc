@@ -147,7 +147,7 @@ WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
                               Progress* progress) {
   const bool pictures = std::any_of(world.maps.begin(), world.maps.end(),
                                     [](const EdgelMap& m) { return m.grey != nullptr; });
-  if (!options.missing.on || !pictures || options.deadline.passed()) return {sketch, {}};
+  if (!options.missing.on || !pictures || options.deadline.passed()) return {sketch, {}, {}};
   Stage stage("missing", 0, report, progress);
   const MissingEdges missing = add_missing(sketch, world, options.missing);
   int added = int(missing.nats.size());
@@ -159,10 +159,11 @@ WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
   report->counts.push_back({"strokes_missing", double(added)});
   stage.result(std::to_string(added) + " of " + std::to_string(missing.candidates) +
                " candidates stand");
-  if (added == 0) return {sketch, {}};
+  if (added == 0) return {sketch, {}, {}};
   CloseOptions close = options.close;
   close.round.least_turn = 2;  // nobody has seen more of them than what was added
-  return {close_graph(probable, world, prices(options), close).sketch, missing.corners};
+  return {close_graph(probable, world, prices(options), close).sketch, missing.corners,
+          missing.rings};
 }
 
 PolishOptions last_polish(const ReconstructOptions& options) {
@@ -184,6 +185,26 @@ void put_back(const Sketch& before, const std::vector<Eigen::Vector3d>& places, 
       if ((before.nodes.col(n) - place).norm() < footprint &&
           (after->nodes.col(n) - place).norm() > footprint)
         after->nodes.col(n) = place;
+}
+
+// Circles of `before` at one of the places, the same.
+void put_back_rings(const Sketch& before, const std::vector<ControlPoints>& rings, double footprint,
+                    Sketch* after) {
+  if (after->size() != before.size()) return;
+  const auto far = [&](const ControlPoints& a, const ControlPoints& b) {
+    return (a.p[0] - b.p[0]).norm() > footprint ||
+           std::abs(a.p[1].norm() - b.p[1].norm()) > footprint;
+  };
+  for (int s = 0; s < before.size(); ++s) {
+    const Stroke &from = before.strokes[s], &to = after->strokes[s];
+    if (from.kind != StrokeKind::kCircle || to.kind != StrokeKind::kCircle) continue;
+    const ControlPoints now = control_points(before, s);
+    const bool ring = std::any_of(rings.begin(), rings.end(),
+                                  [&](const ControlPoints& r) { return !far(r, now); });
+    if (ring && far(control_points(*after, s), now))
+      for (int k = 0; k < num_handles(StrokeKind::kCircle); ++k)
+        after->handles.col(to.handle + k) = before.handles.col(from.handle + k);
+  }
 }
 
 }  // namespace
@@ -214,6 +235,7 @@ FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
     }
   }
   put_back(sketch, all.corners, world.footprint, &out.sketch);
+  put_back_rings(sketch, all.rings, world.footprint, &out.sketch);
   smooth_joints(&out.sketch);
   judge_strokes(world, options, {}, &out);
   stage.result(std::to_string(out.sketch.size()) + " strokes");

@@ -81,6 +81,7 @@ Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const Reconstr
 struct WithMissing {
   Sketch sketch;
   std::vector<Eigen::Vector3d> corners;  ///< in pockets, where copies of rims end (add_missing.h)
+  std::vector<ControlPoints> rings;      ///< circles of patterns and floors
 };
 
 /// Edges added that the others lead to expect and that the pictures show (add_missing.h), if they
@@ -113,8 +114,8 @@ struct FinishedSketch {
 PolishOptions last_polish(const ReconstructOptions& options);
 
 /// Last polish on the edgels, regularities, standard lengths, and the evidence. Corners in pockets
-/// that move by more than a pixel go back: few views see them, and others what hides them. `tags`:
-/// that were measured, for the scale.
+/// and rings of patterns that move by more than a pixel go back: few views see them, and others
+/// what hides them. `tags`: that were measured, for the scale.
 FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
                              const std::vector<TagSquare>& tags, const ReconstructOptions& options,
                              RunReport* report, Progress* progress);

@@ -7,6 +7,7 @@
 #include "pipelines/candidates/level_copies.h"
 #include "pipelines/candidates/level_rings.h"
 #include "pipelines/candidates/pattern_copies.h"
+#include "pipelines/candidates/ring_patterns.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {
@@ -73,7 +74,7 @@ TEST(Candidates, CopiesSettleInTheLevelsThatLargeStrokesTell) {
 
 // The plate, and three holes of which edgels tell: one in its top, one 0.1 below, one that two
 // views see.
-TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevelOrTwoIfAsked) {
+TEST(Candidates, RingsAreWhereViewsAgreeInALevel) {
   const auto rim = [](const Vector3d& c) {
     return test::circle(c, 0.03 * Vector3d::UnitX(), 0.03 * Vector3d::UnitY());
   };
@@ -84,22 +85,22 @@ TEST(Candidates, RingsAreWhereThreeViewsAgreeInALevelOrTwoIfAsked) {
   const EdgeWorld more = test::ideal_world(views, {rim(seldom), rim(in_top), rim(below)});
   for (const size_t v : {size_t(0), size_t(1)}) world.maps[v] = more.maps[v];
   const std::vector<Levels> levels = find_levels(plate(), kTolerance);
-  const std::vector<Candidate> rings = level_rings({levels[0]}, world, no_edgels(world), 3);
-  ASSERT_EQ(rings.size(), 1);
-  EXPECT_EQ(rings[0].kind, StrokeKind::kCircle);
-  EXPECT_LT((rings[0].curve.p[0] - in_top).norm(), 0.1 * world.footprint);
-  EXPECT_NEAR(rings[0].curve.p[1].norm(), 0.03, 0.1 * world.footprint);
-  const std::vector<Candidate> more_rings = level_rings({levels[0]}, world, no_edgels(world), 2);
-  const auto has = [&](const Vector3d& centre) {
-    return std::any_of(more_rings.begin(), more_rings.end(), [&](const Candidate& c) {
-      return (c.curve.p[0] - centre).norm() < 0.1 * world.footprint;
-    });
+  std::vector<LevelRing> rings = level_rings({levels[0]}, world, no_edgels(world));
+  ASSERT_GE(rings.size(), 2);
+  const auto by_views = [](const LevelRing& a, const LevelRing& b) { return a.views > b.views; };
+  std::stable_sort(rings.begin(), rings.end(), by_views);
+  EXPECT_GE(rings[0].views, 3);
+  EXPECT_EQ(rings[0].ring.kind, StrokeKind::kCircle);
+  EXPECT_LT((rings[0].ring.curve.p[0] - in_top).norm(), 0.1 * world.footprint);
+  EXPECT_NEAR(rings[0].ring.curve.p[1].norm(), 0.03, 0.1 * world.footprint);
+  EXPECT_LE(rings[1].views, 2);  // none of the one below, on which views do not agree here
+  const auto of_two = [&](const LevelRing& r) {
+    return r.views == 2 && (r.ring.curve.p[0] - seldom).norm() < 0.1 * world.footprint;
   };
-  EXPECT_TRUE(has(in_top));
-  EXPECT_TRUE(has(seldom));
+  EXPECT_EQ(std::count_if(rings.begin(), rings.end(), of_two), 1);
   EdgelFlags explained = no_edgels(world);
   for (std::vector<char>& view : explained) std::fill(view.begin(), view.end(), 1);
-  EXPECT_TRUE(level_rings({levels[0]}, world, explained, 3).empty());
+  EXPECT_TRUE(level_rings({levels[0]}, world, explained).empty());
 }
 
 // As on a natural surface, where every stroke is a level of its own.
@@ -137,6 +138,62 @@ TEST(Candidates, TheFourthHoleOfARectangleAndTheRestOfABoltCircle) {
   const std::vector<Candidate> copies = circle_patterns(bolts, kTolerance);
   for (int k = 2; k < 6; ++k)
     EXPECT_TRUE(has_circle(copies, {std::cos(k * M_PI / 3), std::sin(k * M_PI / 3), 0}, 0.1)) << k;
+}
+
+LevelRing ring(double angle, double distance, double radius) {
+  LevelRing out;
+  out.views = 1;
+  out.ring.kind = StrokeKind::kCircle;
+  out.ring.curve.count = 2;
+  out.ring.curve.p[0] = {distance * std::cos(angle), distance * std::sin(angle), 0.2};
+  out.ring.curve.p[1] = radius * Vector3d::UnitZ();
+  return out;
+}
+
+std::vector<Candidate> patterns_of(const Sketch& sketch, const std::vector<LevelRing>& rings) {
+  EdgeWorld world;
+  world.footprint = 0.005;
+  const ContrastJudge judge(world, {}, {}, {});
+  int tried = 0;
+  const std::vector<Candidate> out =
+      ring_patterns(sketch, rings, kTolerance, world, judge, 7, &tried);
+  EXPECT_EQ(tried, out.empty() ? 0 : 1);
+  return out;
+}
+
+// Of six holes around a bore four are seen, one of them in the sketch; a ring elsewhere, one of
+// another size and one at another distance are none of them.
+TEST(Candidates, HalfOfABoltCircleAsksForAllOfItAsOneGroup) {
+  Sketch bore;
+  add_circle({0, 0, 0.5}, 0.3, &bore);  // of another level
+  add_circle({std::cos(0.1), std::sin(0.1), 0.2}, 0.1, &bore);
+  const double turn = M_PI / 3;
+  const std::vector<LevelRing> strays = {ring(1.5, 1, 0.1), ring(0.1 + 4 * turn, 1, 0.13),
+                                         ring(0.1 + 5 * turn, 1.1, 0.1)};
+  std::vector<LevelRing> rings = strays;
+  for (const int k : {1, 2, 3}) rings.push_back(ring(0.1 + k * turn, 1, 0.1));
+  const std::vector<Candidate> pattern = patterns_of(bore, rings);
+  ASSERT_EQ(pattern.size(), 6);
+  for (int k = 0; k < 6; ++k) {
+    const Vector3d centre(std::cos(0.1 + k * turn), std::sin(0.1 + k * turn), 0.2);
+    EXPECT_TRUE(has_circle(pattern, centre, 0.1)) << k;
+    EXPECT_EQ(pattern[k].group, 7);
+  }
+  rings = strays;
+  rings.push_back(ring(0.1 + turn, 1, 0.1));
+  EXPECT_TRUE(patterns_of(bore, rings).empty());  // of six, two
+}
+
+TEST(Candidates, RingsThatDoNotRepeatOrHaveNothingToGoAroundAreNoPattern) {
+  Sketch bore;
+  add_circle({0, 0, 0.5}, 0.3, &bore);
+  EXPECT_TRUE(patterns_of(bore, {ring(0, 1, 0.1), ring(0.9, 1, 0.1), ring(2.2, 1, 0.1)}).empty());
+  std::vector<LevelRing> whole;
+  for (int k = 0; k < 4; ++k) whole.push_back(ring(k * M_PI / 2, 1, 0.1));
+  EXPECT_EQ(patterns_of(bore, whole).size(), 4);
+  EXPECT_TRUE(patterns_of({}, whole).empty());
+  for (LevelRing& r : whole) r.ring.curve.p[1] = Vector3d(0, 0.1, 0);  // upright
+  EXPECT_TRUE(patterns_of(bore, whole).empty());
 }
 
 TEST(Candidates, WithoutAPictureNothingIsAdded) {
