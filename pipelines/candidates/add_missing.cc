@@ -9,6 +9,7 @@
 #include "edges/contrast/alarm_threshold.h"
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
+#include "pipelines/candidates/append_candidate.h"
 #include "pipelines/candidates/judged_candidates.h"
 #include "sketches/curve/sample.h"
 
@@ -60,17 +61,6 @@ bool is_rim(const EdgeWorld& world, const CurvePoints& points, double least) {
   return rim.nats > least || rim.is_round(world.footprint);
 }
 
-void append(const Candidate& c, Sketch* sketch) {
-  const int inner = num_handles(c.kind), first = is_closed(c.kind) ? 0 : 1;
-  int begin = -1, end = -1;
-  if (!is_closed(c.kind)) {
-    begin = sketch->add_node(c.curve.p[0]);
-    end = sketch->add_node(c.curve.p[c.curve.count - 1]);
-  }
-  sketch->add_stroke(c.kind, begin, end,
-                     {c.curve.p.begin() + first, c.curve.p.begin() + first + inner});
-}
-
 // One pass over all candidates.
 class Pass {
  public:
@@ -83,7 +73,7 @@ class Pass {
         explained_(explained_by(strokes_, world)),
         judge_(world, strokes_, explained_, options.contrast),
         all_(judge_candidates(sketch, world, explained_, judge_, ring_views, refused)),
-        least_(alarm_threshold(all_.nulls, all_.candidates.size() + size_t(all_.refused),
+        least_(alarm_threshold(all_.nulls, all_.singles + double(all_.refused),
                                options.false_strokes / kPasses)),
         least_of_pocket_(least_of_group(all_.depths + double(all_.groups.size()) - all_.patterns)),
         least_of_pattern_(least_of_group(all_.patterns)) {}
@@ -97,7 +87,7 @@ class Pass {
       const CandidateGroup& group = all_.groups[number];
       add_group(group, group.pattern ? least_of_pattern_ : least_of_pocket_);
     }
-    std::vector<int> order(all_.candidates.size());
+    std::vector<int> order(all_.singles);
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return all_.nats[a] > all_.nats[b]; });
@@ -128,7 +118,7 @@ class Pass {
 
   void add(int i, double nats, bool group) {
     judge_.take(all_.points[i]);
-    append(all_.candidates[i], &added_);
+    append_candidate(all_.candidates[i], &added_);
     out_.nats.push_back(nats);
     out_.group.push_back(group);
     const Candidate& c = all_.candidates[i];

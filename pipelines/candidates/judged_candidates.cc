@@ -11,6 +11,7 @@
 #include "pipelines/candidates/level_rings.h"
 #include "pipelines/candidates/pattern_copies.h"
 #include "pipelines/candidates/ring_patterns.h"
+#include "pipelines/candidates/symmetry_copies.h"
 
 namespace sketchsplat {
 namespace {
@@ -63,9 +64,6 @@ std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& wor
     *first_pattern = std::max(*first_pattern, c.group + 1);
   }
   const std::vector<LevelRing> rings = level_rings(levels, world, explained);
-  for (const Candidate& c :
-       ring_patterns(sketch, rings, tolerance, world, judge, *first_pattern, &tried->patterns))
-    out.push_back(c);
   for (const std::vector<Candidate>& more :
        {level_copies(sketch, levels), mirror_copies(sketch, levels),
         circle_patterns(sketch, tolerance), of_views(rings, ring_views)})
@@ -73,6 +71,14 @@ std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& wor
       out.push_back(c);
       settle(levels, tolerance, &out.back());
     }
+  const auto add_patterns = [&](const std::vector<Candidate>& patterns) {
+    out.insert(out.end(), patterns.begin(), patterns.end());
+    return patterns.empty() ? 0 : patterns.back().group + 1;
+  };
+  const int next = add_patterns(
+      ring_patterns(sketch, rings, tolerance, world, judge, *first_pattern, &tried->patterns));
+  add_patterns(symmetry_copies(sketch, levels, known, tolerance, world.footprint,
+                               std::max(next, *first_pattern), &tried->patterns));
   return out;
 }
 
@@ -117,8 +123,9 @@ Seen seen_at_best(const Candidate& c, const CurvePoints& moved, const ContrastJu
 
 // Candidates that are not known, each once; of those of groups that are known, that they are.
 void collect(const std::vector<Candidate>& all, const KnownCurves& known, double px,
-             const std::vector<CurvePoints>& refused, JudgedCandidates* out) {
+             const std::vector<CurvePoints>& refused, int first_pattern, JudgedCandidates* out) {
   for (const Candidate& c : all) {
+    const bool pattern = c.group >= first_pattern;
     const CurvePoints points = candidate_points(c, px);
     if (points.position.cols() < kLeastPx) continue;
     const double share = known.share(points);
@@ -126,7 +133,7 @@ void collect(const std::vector<Candidate>& all, const KnownCurves& known, double
       CandidateGroup& group = out->groups[c.group];
       (c.floor ? group.known_floor : group.known).push_back(share * kKnownNats);
     }
-    if (share > (c.group >= 0 ? kWholeShare : kKnownShare)) continue;
+    if (share > (c.group >= 0 && !pattern ? kWholeShare : kKnownShare)) continue;
     const auto is_this = [&](const CurvePoints& p) { return is_same(p, points, kSamePx * px); };
     if (c.group < 0 && std::any_of(out->points.begin(), out->points.end(), is_this)) continue;
     if (c.group < 0 && std::any_of(refused.begin(), refused.end(), is_this)) {
@@ -135,6 +142,7 @@ void collect(const std::vector<Candidate>& all, const KnownCurves& known, double
     }
     out->candidates.push_back(c);
     out->points.push_back(points);
+    if (!pattern) out->singles = int(out->candidates.size());
   }
 }
 
@@ -142,12 +150,12 @@ void collect(const std::vector<Candidate>& all, const KnownCurves& known, double
 void judge_all(const KnownCurves& known, const ContrastJudge& judge, double px,
                JudgedCandidates* out) {
   const int n = int(out->candidates.size());
-  const int copies = std::clamp(kNulls / std::max(1, n), 1, kMostNulls);
+  const int copies = std::clamp(kNulls / std::max(1, out->singles), 1, kMostNulls);
   out->nats.resize(n);
-  out->nulls.assign(size_t(n) * copies, -INFINITY);
+  out->nulls.assign(size_t(out->singles) * copies, -INFINITY);
   parallel_for(n, 4, [&](int i) {
     Candidate& c = out->candidates[i];
-    for (int k = i * copies; k < (i + 1) * copies; ++k) {
+    for (int k = i * copies; k < (i + 1) * copies && i < out->singles; ++k) {
       const CurvePoints aside = moved_aside(out->points[i], k, px);
       if (known.share(aside) <= kKnownShare) out->nulls[k] = seen_at_best(c, aside, judge).nats;
     }
@@ -170,7 +178,7 @@ JudgedCandidates judge_candidates(const Sketch& sketch, const EdgeWorld& world,
   const std::vector<Candidate> all =
       all_candidates(sketch, world, explained, known, judge, ring_views, &first_pattern, &out);
   if (int(all.size()) > kMostCandidates) return out;
-  collect(all, known, px, *refused, &out);
+  collect(all, known, px, *refused, first_pattern, &out);
   judge_all(known, judge, px, &out);
   for (int i = 0; i < int(out.candidates.size()); ++i) {
     const int group = out.candidates[i].group;

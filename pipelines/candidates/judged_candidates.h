@@ -10,10 +10,10 @@
 
 namespace sketchsplat {
 
-/// Candidates that are there or not, all together: floor and walls of a pocket, or a pattern of
-/// rings.
+/// Candidates that are there or not, all together: floor and walls of a pocket, a pattern of rings,
+/// or images of a stroke under the symmetries of the sketch.
 struct CandidateGroup {
-  bool pattern = false;
+  bool pattern = false;  ///< of rings, or what a symmetry tells; else of a pocket
   std::vector<int> members;
   std::vector<double> known, known_floor;  ///< [nat] of others that the sketch has already
 };
@@ -24,6 +24,7 @@ struct JudgedCandidates {
   std::vector<CurvePoints> points;       ///< a pixel apart
   std::vector<double> nats, nulls;       ///< [nat] of each, at a first look; of copies moved aside
   std::map<int, CandidateGroup> groups;  ///< of more than one
+  int singles = 0;                       ///< of these, that are of no pattern; they come first
   int depths = 0, patterns = 0;          ///< that were tried for groups
   int refused = 0;                       ///< candidates that nothing spoke for in a pass before
   int tests() const { return int(candidates.size()) + depths + patterns + refused; }

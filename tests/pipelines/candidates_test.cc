@@ -8,6 +8,7 @@
 #include "pipelines/candidates/level_rings.h"
 #include "pipelines/candidates/pattern_copies.h"
 #include "pipelines/candidates/ring_patterns.h"
+#include "pipelines/candidates/symmetry_copies.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {
@@ -194,6 +195,74 @@ TEST(Candidates, RingsThatDoNotRepeatOrHaveNothingToGoAroundAreNoPattern) {
   EXPECT_TRUE(patterns_of({}, whole).empty());
   for (LevelRing& r : whole) r.ring.curve.p[1] = Vector3d(0, 0.1, 0);  // upright
   EXPECT_TRUE(patterns_of(bore, whole).empty());
+}
+
+// A prism with a bore. `without`: of its upright edges, the first of them.
+Sketch prism(int sides, int without) {
+  Sketch s;
+  std::vector<int> low, high;
+  for (int k = 0; k < sides; ++k) {
+    const double a = 0.3 + 2 * M_PI * k / sides;
+    low.push_back(s.add_node({std::cos(a), std::sin(a), 0}));
+    high.push_back(s.add_node({std::cos(a), std::sin(a), 0.6}));
+  }
+  for (int k = 0; k < sides; ++k) {
+    const int next = (k + 1) % sides;
+    s.add_stroke(StrokeKind::kLine, low[k], low[next], {});
+    s.add_stroke(StrokeKind::kLine, high[k], high[next], {});
+    if (k >= without) s.add_stroke(StrokeKind::kLine, low[k], high[k], {});
+  }
+  add_circle({0, 0, 0}, 0.4, &s);
+  add_circle({0, 0, 0.6}, 0.4, &s);
+  return s;
+}
+
+std::vector<Candidate> symmetric_of(const Sketch& s) {
+  constexpr double kPx = 0.005;
+  const KnownCurves known(s, kPx, kKnownPx * kPx);
+  int tried = 0;
+  const std::vector<Candidate> out =
+      symmetry_copies(s, find_levels(s, kTolerance), known, kTolerance, kPx, 3, &tried);
+  EXPECT_EQ(tried == 0, out.empty());
+  for (const Candidate& c : out) EXPECT_TRUE(c.group >= 3 && c.group < 3 + tried);
+  return out;
+}
+
+int uprights(const std::vector<Candidate>& candidates) {
+  int out = 0;
+  for (const Candidate& c : candidates)
+    out += c.kind == StrokeKind::kLine && std::abs(c.curve.p[0].z() - c.curve.p[1].z()) > 0.59;
+  return out;
+}
+
+TEST(Candidates, TheEdgesThatANutLacksAreThoseThatItsSymmetryAsksFor) {
+  const std::vector<Candidate> missing = symmetric_of(prism(6, 2));
+  EXPECT_EQ(missing.size(), 6);  // the known four among them
+  EXPECT_EQ(uprights(missing), 6);
+  EXPECT_TRUE(symmetric_of(prism(6, 0)).empty());
+  EXPECT_TRUE(symmetric_of(prism(6, 5)).empty());  // one of six tells nothing
+  EXPECT_TRUE(symmetric_of({}).empty());
+}
+
+TEST(Candidates, PiecesOfACircleInASymmetricPartAreACircle) {
+  Sketch s = prism(6, 0);
+  const auto at = [](double a) { return Vector3d(0.7 * std::cos(a), 0.7 * std::sin(a), 0.6); };
+  for (const double a : {0.2, 2.0})  // two pieces of 1.3 rad
+    s.add_stroke(StrokeKind::kArc, s.add_node(at(a)), s.add_node(at(a + 1.3)), {at(a + 0.65)});
+  const std::vector<Candidate> missing = symmetric_of(s);
+  EXPECT_TRUE(has_circle(missing, {0, 0, 0.6}, 0.7));
+  for (const Candidate& c : missing) EXPECT_EQ(c.kind, StrokeKind::kCircle);
+}
+
+// Four lines all over the place, and a circle between them.
+TEST(Candidates, WhatIsNotSymmetricAsksForNothing) {
+  Sketch s;
+  const std::vector<Vector3d> corners = {{0, 0, 0}, {2, 0, 0.3}, {1.7, 1.1, 0}, {0.4, 0.8, 0.5}};
+  std::vector<int> nodes;
+  for (const Vector3d& c : corners) nodes.push_back(s.add_node(c));
+  for (int k = 0; k < 4; ++k) s.add_stroke(StrokeKind::kLine, nodes[k], nodes[(k + 1) % 4], {});
+  add_circle({0.9, 0.5, 0.2}, 0.2, &s);
+  EXPECT_TRUE(symmetric_of(s).empty());
 }
 
 TEST(Candidates, WithoutAPictureNothingIsAdded) {
