@@ -74,19 +74,14 @@ class Pass {
         judge_(world, strokes_, explained_, options.contrast),
         all_(judge_candidates(sketch, world, explained_, judge_, ring_views, refused)),
         least_(alarm_threshold(all_.nulls, all_.singles + double(all_.refused),
-                               options.false_strokes / kPasses)),
-        least_of_pocket_(least_of_group(all_.depths + double(all_.groups.size()) - all_.patterns)),
-        least_of_pattern_(least_of_group(all_.patterns)) {}
+                               options.false_strokes / kPasses)) {}
 
   MissingEdges run() {
     out_ = {sketch_, {}, {}, {}, {}, all_.tests()};
     std::vector<std::pair<double, int>> groups;  // the likeliest first
-    for (const auto& [number, group] : all_.groups) groups.push_back({-nats_of(group), number});
+    for (const auto& [number, group] : all_.groups) groups.push_back({-at_first(group), number});
     std::sort(groups.begin(), groups.end());
-    for (const auto& [nats, number] : groups) {
-      const CandidateGroup& group = all_.groups[number];
-      add_group(group, group.pattern ? least_of_pattern_ : least_of_pocket_);
-    }
+    for (const auto& [nats, number] : groups) add_group(all_.groups[number]);
     std::vector<int> order(all_.singles);
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
@@ -100,15 +95,28 @@ class Pass {
   }
 
  private:
-  double least_of_group(double tests) const {
-    return kGroup * std::log(std::max(1.0, tests) * kPasses / options_.false_strokes);
+  // What speaks for a group, if its members together get so much. Of a pattern those that are known
+  // tell how likely the others are beforehand, of a pocket each counts as what a view shows.
+  static double told_of(const CandidateGroup& group, double nats) {
+    if (!group.pattern) return nats + sum(group.known) + sum(group.known_floor);
+    return nats +
+           std::log((double(group.known.size()) + 0.5) / (double(group.members.size()) + 0.5));
   }
 
   // At a first look, before anything is added.
-  double nats_of(const CandidateGroup& group) const {
-    double out = sum(group.known) + sum(group.known_floor);
-    for (const int i : group.members) out += all_.nats[i];
-    return out;
+  double at_first(const CandidateGroup& group) const {
+    double nats = 0;
+    for (const int i : group.members) nats += all_.nats[i];
+    return told_of(group, nats);
+  }
+
+  // Of likelihood ratios of no edges one in exp(x) exceeds x; what one view shows by accident it
+  // may show along several of a group: they count as two.
+  double least_of(const CandidateGroup& group) const {
+    const double tests =
+        group.pattern ? all_.patterns : all_.depths + double(all_.groups.size()) - all_.patterns;
+    const double one = std::log(std::max(1.0, tests) * kPasses / options_.false_strokes);
+    return group.pattern && group.members.size() < 2 ? one : kGroup * one;
   }
 
   bool is_known(const CurvePoints& points) const {
@@ -131,10 +139,10 @@ class Pass {
     }
   }
 
-  // They are there or not, all together. Of likelihood ratios of no edges one in exp(x) exceeds x;
-  // what one view shows by accident it may show along several of them: they count as two.
-  void add_group(const CandidateGroup& group, double least) {
-    if (group.members.empty() || !(nats_of(group) > least)) return;
+  // They are there or not, all together.
+  void add_group(const CandidateGroup& group) {
+    const double least = least_of(group);
+    if (group.members.empty() || !(at_first(group) > least)) return;
     double beside = 0;
     std::vector<double> nats, walls = group.known, floor = group.known_floor;
     for (const int i : group.members) {
@@ -143,9 +151,9 @@ class Pass {
       (all_.candidates[i].floor ? floor : walls).push_back(nats.back());
       beside += judge_.beside(all_.points[i], windows);
     }
-    const double all = sum(walls) + sum(floor);
+    const double all = sum(walls) + sum(floor), told = told_of(group, sum(nats));
     // Walls go on to any depth: it is the floor that tells it.
-    if (!(all > least) || beside > kGroupBeside * all || !most_show(floor)) return;
+    if (!(told > least) || beside > kGroupBeside * all || !most_show(floor)) return;
     walls.insert(walls.end(), floor.begin(), floor.end());
     if (!most_show(walls)) return;
     for (size_t k = 0; k < nats.size(); ++k) {
@@ -172,7 +180,7 @@ class Pass {
   EdgelFlags explained_;
   ContrastJudge judge_;
   JudgedCandidates all_;
-  double least_, least_of_pocket_, least_of_pattern_;  // [nat]
+  double least_;  // [nat] of one that stands alone
   MissingEdges out_;
   Sketch added_;
 };

@@ -244,10 +244,7 @@ std::vector<Candidate> symmetry_copies(const Sketch& sketch, const std::vector<L
   std::vector<Candidate> out;
   std::vector<char> done(places.stroke.size(), 0);
   for (const int s : by_length) {
-    const auto is_known = [&](const Eigen::Affine3d& by) {
-      return known.share(moved_by(places.at[s], by)) > kWholeShare;
-    };
-    if (done[s] || std::all_of(motions.begin(), motions.end(), is_known)) continue;
+    if (done[s]) continue;
     std::vector<Candidate> images =
         whole_images(places.stroke[s], motions, places.size, tolerance, px);
     const KnownCurves covered = curves_of(images, px);
