@@ -87,6 +87,7 @@ std::string lower(std::string text) {
 
 // What lies beyond has no distances that a double can hold.
 constexpr double kLargest = 1e100;
+constexpr double kMostViews = 1e6;  // that may see a point
 
 // Samples are taken every so often whatever the size: where that is too many, somebody means
 // something else by the numbers.
@@ -182,10 +183,15 @@ Eigen::Matrix3Xd points_of(const json& list, const std::string& path) {
 // As many numbers as the curve has points in the file; none if the file does not say.
 std::vector<int> visible_views_of(const json& item, Eigen::Index points, const std::string& path) {
   if (!item.contains("visible_views") || item["visible_views"].empty()) return {};
-  const auto views = item["visible_views"].get<std::vector<int>>();
-  if (Eigen::Index(views.size()) != points) {
+  const auto numbers = item["visible_views"].get<std::vector<double>>();
+  if (Eigen::Index(numbers.size()) != points) {
     throw InputError(path, std::to_string(points) + " visible_views, one a point",
-                     std::to_string(views.size()));
+                     std::to_string(numbers.size()));
+  }
+  std::vector<int> views;
+  for (const double n : numbers) {
+    if (!(n >= 0 && n <= kMostViews)) throw InputError(path, "numbers of views", json(n).dump());
+    views.push_back(int(n));
   }
   return views;
 }

@@ -131,7 +131,7 @@ SceneRecord read_record(const std::string& folder) {
     record.note = json.at("note");
     record.thumbnail = json.at("thumbnail");
     for (const auto& [name, size] : json.at("files").items())
-      record.files.push_back({name, size.get<std::uint64_t>()});
+      record.files.push_back({name, size.get_ref<const Json::number_unsigned_t&>()});
     record.key = key_in(json.at("key"));
   } catch (const std::exception&) {
     return {};

@@ -32,7 +32,7 @@ MatrixXd Gaussian::first_spread(const Rows& rows) const {
 
 MatrixXd Gaussian::gathered(const Rows& rows) const {
   MatrixXd out = MatrixXd::Zero(rows.rows(), count_);
-  for (int r = 0; r < rows.rows(); ++r)
+  for (int r = 0; r < rows.rows() && count_ > 0; ++r)
     for (Rows::InnerIterator it(rows, r); it; ++it)
       out.row(r) += it.value() * taken_.row(it.col()).head(count_);
   return out;

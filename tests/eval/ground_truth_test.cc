@@ -157,6 +157,20 @@ TEST(FindGroundTruth, ReadsCurvesInMillimetres) {
   EXPECT_EQ(truth.extent, 1) << "0.99 is the unit cube's object";
 }
 
+TEST(FindGroundTruth, NumbersOfViewsThatNoSceneCanHaveAreRefused) {
+  const TestFolder folder;
+  const auto read = [&](const std::string& views) {
+    folder.write("derived_gt_edges.json",
+                 R"({"curves": [{"type": "Line", "points_mm": [[0,0,0],[1,0,0]],
+                     "visible_views": )" +
+                     views + "}]}");
+    return find_ground_truth(folder.path()).curves.at(0).visible_views;
+  };
+  EXPECT_EQ(read("[3, 24]"), (std::vector<int>{3, 24}));
+  for (const char* wrong : {"[-1e308, 1]", "[1, 3e9]", "[-1, 1]", "[1]"})
+    EXPECT_THROW(read(wrong), InputError) << wrong;
+}
+
 TEST(FindGroundTruth, KnowsAnObjectThatFillsTheUnitCubeByItsEdges) {
   const TestFolder folder;
   const auto extent = [&](const std::string& from, const std::string& to) {

@@ -11,4 +11,4 @@ const sketchsplat::BrepPlugin kPlugin = {
 
 }  // namespace
 
-extern "C" const sketchsplat::BrepPlugin* sketchsplat_brep_plugin() { return &kPlugin; }
+extern "C" const void* sketchsplat_brep_plugin() { return &kPlugin; }

@@ -19,4 +19,4 @@ const SynthesisPlugin kPlugin = {
 
 }  // namespace
 
-extern "C" const SynthesisPlugin* sketchsplat_synthesis_plugin() { return &kPlugin; }
+extern "C" const void* sketchsplat_synthesis_plugin() { return &kPlugin; }
