@@ -161,7 +161,7 @@ TEST(FindGroundTruth, NumbersOfViewsThatNoSceneCanHaveAreRefused) {
   const TestFolder folder;
   const auto read = [&](const std::string& views) {
     folder.write("derived_gt_edges.json",
-                 R"({"curves": [{"type": "Line", "points_mm": [[0,0,0],[1,0,0]],
+                 R"({"scale": 0.1, "curves": [{"type": "Line", "points_mm": [[0,0,0],[9.9,0,0]],
                      "visible_views": )" +
                      views + "}]}");
     return find_ground_truth(folder.path()).curves.at(0).visible_views;
