@@ -160,10 +160,11 @@ TEST(FindGroundTruth, ReadsCurvesInMillimetres) {
 TEST(FindGroundTruth, NumbersOfViewsThatNoSceneCanHaveAreRefused) {
   const TestFolder folder;
   const auto read = [&](const std::string& views) {
-    folder.write("derived_gt_edges.json",
-                 R"({"scale": 0.1, "curves": [{"type": "Line", "points_mm": [[0,0,0],[9.9,0,0]],
+    folder.write(
+        "derived_gt_edges.json",
+        R"({"scale": 0.1, "offset": [0, 0, 0], "curves": [{"type": "Line", "points_mm": [[0,0,0],[9.9,0,0]],
                      "visible_views": )" +
-                     views + "}]}");
+            views + "}]}");
     return find_ground_truth(folder.path()).curves.at(0).visible_views;
   };
   EXPECT_EQ(read("[3, 24]"), (std::vector<int>{3, 24}));
