@@ -8,6 +8,7 @@
 #include "datasets/types/parallel.h"
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
+#include "pipelines/survey/contour_lines.h"
 #include "pipelines/survey/observe.h"
 #include "pipelines/survey/prior_odds.h"
 #include "pipelines/survey/round_judge.h"
@@ -176,6 +177,7 @@ class Greedy {
       own(world_, o_, i, &owned_);
       explain(world_, points_of(o_, i), {}, &explained_);
     }
+    drop_contours(&keep, &result);
     result.sketch = keep_strokes(sketch_, keep);
     int next = 0;
     for (int i = 0; i < sketch_.size(); ++i) {
@@ -234,6 +236,18 @@ class Greedy {
     if (verdict == Verdict::kKept) return verdict;
     const int lone = claim(o_, i, explained_);
     return known(i) || lone >= options_.min_views ? judge_by(explained_, i, lone, result) : verdict;
+  }
+
+  // Lines that curves which stay tell to be contours of smooth surfaces.
+  void drop_contours(std::vector<bool>* keep, Selection* result) const {
+    const std::vector<bool> all = *keep;
+    for (int i = 0; i < sketch_.size(); ++i) {
+      if (!all[i] || known(i)) continue;
+      const double nats = contour_nats(i, sketch_, all, o_, world_);
+      if (!(nats > 0)) continue;
+      result->verdicts[i] = Verdict::kRound;
+      (*keep)[i] = false;
+    }
   }
 
   int needed(int i, int views) const { return is_rare(i, views) ? options_.min_views : sure_; }
