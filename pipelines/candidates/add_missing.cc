@@ -9,7 +9,6 @@
 #include "edges/contrast/alarm_threshold.h"
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
-#include "pipelines/candidates/append_candidate.h"
 #include "pipelines/candidates/judged_candidates.h"
 #include "sketches/curve/sample.h"
 
@@ -126,7 +125,7 @@ class Pass {
 
   void add(int i, double nats, bool group) {
     judge_.take(all_.points[i]);
-    append_candidate(all_.candidates[i], &added_);
+    append(all_.candidates[i], &added_);
     out_.nats.push_back(nats);
     out_.group.push_back(group);
     const Candidate& c = all_.candidates[i];

@@ -27,6 +27,9 @@ const std::vector<Window>& windows_of(const Candidate& candidate);
 /// Points along a candidate, at most `spacing` (world units) apart, at least two.
 CurvePoints candidate_points(const Candidate& candidate, double spacing);
 
+/// Adds a candidate as a stroke of its own, with nodes of its own.
+void append(const Candidate& candidate, Sketch* sketch);
+
 /// [footprints] from a stroke of what is known already; share of a candidate that makes it so, and
 /// that makes one of a group known as a whole.
 inline constexpr double kKnownPx = 2.5, kKnownShare = 0.4, kWholeShare = 0.9;

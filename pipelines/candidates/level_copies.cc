@@ -134,11 +134,25 @@ std::vector<char> main_levels(const Levels& l) {
   return out;
 }
 
-Candidate moved(const Candidate& candidate, const Vector3d& by) {
+Candidate moved(const Candidate& candidate, const Eigen::Affine3d& by) {
   Candidate out = candidate;
   // Axes of closed curves are vectors, not places.
   const int places = is_closed(candidate.kind) ? 1 : candidate.curve.count;
-  for (int k = 0; k < places; ++k) out.curve.p[k] += by;
+  for (int k = 0; k < out.curve.count; ++k) {
+    out.curve.p[k] = by.linear() * candidate.curve.p[k];
+    if (k < places) out.curve.p[k] += by.translation();
+  }
+  return out;
+}
+
+Candidate moved(const Candidate& candidate, const Vector3d& by) {
+  return moved(candidate, Eigen::Affine3d(Eigen::Translation3d(by)));
+}
+
+Eigen::Affine3d mirror(const Vector3d& normal, double height) {
+  Eigen::Affine3d out = Eigen::Affine3d::Identity();
+  out.linear() -= 2 * normal * normal.transpose();
+  out.translation() = 2 * height * normal;
   return out;
 }
 

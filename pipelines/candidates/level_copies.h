@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "pipelines/candidates/known_curves.h"
@@ -28,8 +29,12 @@ std::vector<Levels> find_levels(const Sketch& sketch, double tolerance);
 /// be as many as strokes squared.
 std::vector<char> main_levels(const Levels& levels);
 
-/// The curve moved along a vector.
+/// The curve moved: along a vector, turned, mirrored.
+Candidate moved(const Candidate& candidate, const Eigen::Affine3d& by);
 Candidate moved(const Candidate& candidate, const Eigen::Vector3d& by);
+
+/// In the plane across a unit normal, at a height along it.
+Eigen::Affine3d mirror(const Eigen::Vector3d& normal, double height);
 
 /// Moves a curve that lies in a level, but for `tolerance`, exactly into it, of every direction:
 /// curves are copied from strokes that err, levels are what all of their strokes say together.

@@ -4,29 +4,15 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "pipelines/candidates/circles.h"
+
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kParallel = 0.999;  // cosine of axes that are
-constexpr int kMostRepeats = 16;     // around an axis
-constexpr int kMostOfOneSize = 12;   // whose parallelograms are asked for
-
-struct Circle {
-  Vector3d centre, axis;  // axis: unit
-  double radius;
-};
-
-std::vector<Circle> circles_of(const Sketch& sketch) {
-  std::vector<Circle> out;
-  for (int i = 0; i < sketch.size(); ++i) {
-    if (sketch.strokes[i].kind != StrokeKind::kCircle) continue;
-    const ControlPoints c = control_points(sketch, i);
-    if (c.p[1].norm() > 0) out.push_back({c.p[0], c.p[1].normalized(), c.p[1].norm()});
-  }
-  return out;
-}
+constexpr int kMostRepeats = 16;    // around an axis
+constexpr int kMostOfOneSize = 12;  // whose parallelograms are asked for
 
 bool are_alike(const Circle& a, const Circle& b, double tolerance) {
   return std::abs(a.radius - b.radius) < tolerance && std::abs(a.axis.dot(b.axis)) > kParallel &&
@@ -34,9 +20,7 @@ bool are_alike(const Circle& a, const Circle& b, double tolerance) {
 }
 
 Candidate at(const Vector3d& centre, const Circle& like) {
-  Candidate out{StrokeKind::kCircle, {}};
-  out.curve.p[0] = centre, out.curve.p[1] = like.radius * like.axis, out.curve.count = 2;
-  return out;
+  return candidate_of({centre, like.axis, like.radius});
 }
 
 // The turns about a middle that two alike circles ask for.
@@ -61,16 +45,9 @@ std::vector<Candidate> mirror_copies(const Sketch& sketch, const std::vector<Lev
   for (const Levels& l : levels) {
     if (l.height.size() < 2) continue;
     const double middle = 0.5 * (l.height.front() + l.height.back());
-    const Eigen::Matrix3d turn = Eigen::Matrix3d::Identity() - 2 * l.normal * l.normal.transpose();
-    for (int i = 0; i < sketch.size(); ++i) {
-      Candidate c{sketch.strokes[i].kind, control_points(sketch, i)};
-      const int places = is_closed(c.kind) ? 1 : c.curve.count;
-      for (int k = 0; k < c.curve.count; ++k) {
-        c.curve.p[k] = turn * c.curve.p[k];
-        if (k < places) c.curve.p[k] += 2 * middle * l.normal;
-      }
-      out.push_back(c);
-    }
+    const Eigen::Affine3d by = mirror(l.normal, middle);
+    for (int i = 0; i < sketch.size(); ++i)
+      out.push_back(moved({sketch.strokes[i].kind, control_points(sketch, i)}, by));
   }
   return out;
 }

@@ -5,40 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipelines/candidates/circles.h"
+
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kParallel = 0.999;  // cosine of axes that are
 constexpr int kFewest = 3;           // of a pattern that are there
 constexpr size_t kMostRings = 1000;  // those that most views agree on; a texture tells nothing
 constexpr int kMostRepeats = 16;     // around an axis
 constexpr double kLeastApart = 2;    // radii between neighbours along the way around
-
-struct Circle {
-  Vector3d centre, axis;  // axis: unit
-  double radius;
-};
-
-Circle circle_of(const ControlPoints& c) { return {c.p[0], c.p[1].normalized(), c.p[1].norm()}; }
-
-void add_circle(StrokeKind kind, const ControlPoints& c, std::vector<Circle>* out) {
-  if (kind == StrokeKind::kCircle && c.p[1].norm() > 0) out->push_back(circle_of(c));
-}
-
-// Lines around which circles may repeat, without those that are the same.
-std::vector<Circle> axes_of(const std::vector<Circle>& circles, double tolerance) {
-  std::vector<Circle> out;
-  for (const Circle& c : circles) {
-    const auto is_this = [&](const Circle& a) {
-      return std::abs(a.axis.dot(c.axis)) > kParallel &&
-             a.axis.cross(c.centre - a.centre).norm() < tolerance;
-    };
-    if (std::none_of(out.begin(), out.end(), is_this)) out.push_back(c);
-  }
-  return out;
-}
 
 // Circles of one size at one distance from an axis in one level.
 struct Orbit {
@@ -104,17 +81,13 @@ Pattern pattern_of(const Orbit& orbit, double tolerance) {
   return best;
 }
 
-std::vector<Candidate> circles_of(const Pattern& p) {
+std::vector<Candidate> whole(const Pattern& p) {
   std::vector<Candidate> out;
   for (int k = 0; k < p.number; ++k) {
     const double a = p.phase + 2 * M_PI * k / p.number;
-    Candidate c;
-    c.kind = StrokeKind::kCircle;
-    c.curve.count = 2;
-    c.curve.p[0] =
-        p.orbit.middle + p.orbit.distance * (std::cos(a) * p.orbit.u + std::sin(a) * p.orbit.v);
-    c.curve.p[1] = p.orbit.radius * p.orbit.axis;
-    out.push_back(c);
+    const Vector3d arm = std::cos(a) * p.orbit.u + std::sin(a) * p.orbit.v;
+    out.push_back(
+        candidate_of({p.orbit.middle + p.orbit.distance * arm, p.orbit.axis, p.orbit.radius}));
   }
   return out;
 }
@@ -151,14 +124,14 @@ std::shared_ptr<const std::vector<Window>> windows_of(const std::vector<Candidat
 std::vector<Candidate> ring_patterns(const Sketch& sketch, const std::vector<LevelRing>& rings,
                                      double tolerance, const EdgeWorld& world,
                                      const ContrastJudge& judge, int first_group, int* tried) {
-  std::vector<Circle> known, all;
-  for (int i = 0; i < sketch.size(); ++i)
-    add_circle(sketch.strokes[i].kind, control_points(sketch, i), &known);
-  for (const LevelRing& r : most_agreed(rings)) add_circle(r.ring.kind, r.ring.curve, &all);
+  const std::vector<Circle> known = circles_of(sketch);
+  std::vector<Circle> all;
+  for (const LevelRing& r : most_agreed(rings))
+    all.push_back({r.ring.curve.p[0], r.ring.curve.p[1].normalized(), r.ring.curve.p[1].norm()});
   const size_t seeds = all.size();
   all.insert(all.end(), known.begin(), known.end());
   std::vector<Pattern> patterns;
-  for (const Circle& axis : axes_of(known, tolerance))
+  for (const Circle& axis : distinct_axes(known, tolerance))
     for (size_t seed = 0; seed < seeds; ++seed) {
       if (!goes_around(axis, all[seed], tolerance)) continue;
       const Pattern p = pattern_of(orbit_of(all[seed], axis, all, tolerance), tolerance);
@@ -168,7 +141,7 @@ std::vector<Candidate> ring_patterns(const Sketch& sketch, const std::vector<Lev
                    [](const Pattern& a, const Pattern& b) { return a.surplus() > b.surplus(); });
   std::vector<Candidate> out;
   for (const Pattern& p : patterns) {
-    std::vector<Candidate> more = circles_of(p);
+    std::vector<Candidate> more = whole(p);
     const auto is_there = [&](const Candidate& c) {
       return std::any_of(out.begin(), out.end(), [&](const Candidate& other) {
         return (other.curve.p[0] - c.curve.p[0]).norm() < tolerance;

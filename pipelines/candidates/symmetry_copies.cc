@@ -7,8 +7,8 @@
 #include <numeric>
 #include <optional>
 
-#include "pipelines/candidates/append_candidate.h"
-#include "sketches/curve/curve.h"
+#include "pipelines/candidates/circles.h"
+#include "topology/core/plain_curve.h"
 
 namespace sketchsplat {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kMostRepeats = 12;  // around an axis
-constexpr int kMostAxes = 8;      // of the largest circles
+constexpr size_t kMostAxes = 8;   // of the largest circles
 constexpr int kMostMirrors = 3;
 constexpr int kPlaces = 12;          // of a stroke at which motions are tried
 constexpr double kOffMiddle = 0.15;  // of the size of the sketch, of an axis from its middle
@@ -25,23 +25,10 @@ constexpr double kThere = 0.33;      // of the images of a stroke that must be k
 constexpr double kWhole = 0.98;      // of a circle that images of an arc of it cover
 constexpr int kFewestMoved = 3;      // strokes that lie on others then
 constexpr double kAnyTurn = 1.0;     // [rad], no part of a turn: what it leaves is round
-constexpr double kParallel = 0.999;  // cosine of axes that are
 
-struct Axis {
-  Vector3d point, way;
-  double radius;
-};
-
-Eigen::Affine3d turn_about(const Axis& axis, double angle) {
-  return Eigen::Translation3d(axis.point) * Eigen::AngleAxisd(angle, axis.way) *
-         Eigen::Translation3d(-axis.point);
-}
-
-Candidate moved_by(Candidate c, const Eigen::Affine3d& by) {
-  const int places = is_closed(c.kind) ? 1 : c.curve.count;
-  for (int k = 0; k < c.curve.count; ++k)
-    c.curve.p[k] = k < places ? Vector3d(by * c.curve.p[k]) : Vector3d(by.linear() * c.curve.p[k]);
-  return c;
+Eigen::Affine3d turn_about(const Circle& axis, double angle) {
+  return Eigen::Translation3d(axis.centre) * Eigen::AngleAxisd(angle, axis.axis) *
+         Eigen::Translation3d(-axis.centre);
 }
 
 CurvePoints moved_by(CurvePoints points, const Eigen::Affine3d& by) {
@@ -49,23 +36,13 @@ CurvePoints moved_by(CurvePoints points, const Eigen::Affine3d& by) {
   return points;
 }
 
-std::vector<Axis> axes_of(const Sketch& sketch, double tolerance) {
-  std::vector<Axis> all, out;
-  for (int s = 0; s < sketch.size(); ++s) {
-    const ControlPoints c = control_points(sketch, s);
-    if (sketch.strokes[s].kind == StrokeKind::kCircle && c.p[1].norm() > 0)
-      all.push_back({c.p[0], c.p[1].normalized(), c.p[1].norm()});
-  }
+// Of the largest circles.
+std::vector<Circle> main_axes(const Sketch& sketch, double tolerance) {
+  std::vector<Circle> all = circles_of(sketch);
   std::stable_sort(all.begin(), all.end(),
-                   [](const Axis& a, const Axis& b) { return a.radius > b.radius; });
-  for (const Axis& a : all) {
-    const auto is_this = [&](const Axis& b) {
-      return std::abs(a.way.dot(b.way)) > kParallel &&
-             b.way.cross(a.point - b.point).norm() < tolerance;
-    };
-    if (int(out.size()) < kMostAxes && std::none_of(out.begin(), out.end(), is_this))
-      out.push_back(a);
-  }
+                   [](const Circle& a, const Circle& b) { return a.radius > b.radius; });
+  std::vector<Circle> out = distinct_axes(all, tolerance);
+  if (out.size() > kMostAxes) out.resize(kMostAxes);
   return out;
 }
 
@@ -111,8 +88,8 @@ bool repeats(const Eigen::Affine3d& by, const std::vector<int>& moved, const Pla
 // The turns about the axis of a circle in the middle, most of one turn.
 std::vector<Eigen::Affine3d> turns_of(const Sketch& sketch, const Places& places,
                                       const KnownCurves& known, double tolerance) {
-  for (const Axis& axis : axes_of(sketch, tolerance)) {
-    if (axis.way.cross(places.middle - axis.point).norm() > kOffMiddle * places.size) continue;
+  for (const Circle& axis : main_axes(sketch, tolerance)) {
+    if (axis.axis.cross(places.middle - axis.centre).norm() > kOffMiddle * places.size) continue;
     std::vector<int> moved;
     for (size_t s = 0; s < places.at.size(); ++s)
       if (known.share(moved_by(places.at[s], turn_about(axis, kAnyTurn))) <= kWholeShare)
@@ -125,13 +102,6 @@ std::vector<Eigen::Affine3d> turns_of(const Sketch& sketch, const Places& places
     }
   }
   return {Eigen::Affine3d::Identity()};
-}
-
-Eigen::Affine3d mirror(const Vector3d& normal, double height) {
-  Eigen::Affine3d out;
-  out.linear() = Eigen::Matrix3d::Identity() - 2 * normal * normal.transpose();
-  out.translation() = 2 * height * normal;
-  return out;
 }
 
 // All motions that leave the sketch as it is, as far as it tells: turns, mirrors half-way between
@@ -180,7 +150,7 @@ std::vector<Candidate> images_of(const Candidate& curve,
                                  const std::vector<Eigen::Affine3d>& motions, double tolerance) {
   std::vector<Candidate> out;
   for (const Eigen::Affine3d& by : motions) {
-    const Candidate c = moved_by(curve, by);
+    const Candidate c = moved(curve, by);
     const auto is_this = [&](const Candidate& o) { return same_curve(o, c, 2 * tolerance); };
     if (std::none_of(out.begin(), out.end(), is_this)) out.push_back(c);
   }
@@ -189,22 +159,21 @@ std::vector<Candidate> images_of(const Candidate& curve,
 
 KnownCurves curves_of(const std::vector<Candidate>& candidates, double px) {
   Sketch all;
-  for (const Candidate& c : candidates) append_candidate(c, &all);
+  for (const Candidate& c : candidates) append(c, &all);
   return KnownCurves(all, px, kKnownPx * px);
 }
 
 // The circle of an arc, if it is no larger than the sketch.
 std::optional<Candidate> circle_of(const Candidate& arc, double size) {
-  if (arc.kind != StrokeKind::kArc) return std::nullopt;
-  const ArcFrame<double> f = arc_frame<double>(arc.curve.p[0], arc.curve.p[1], arc.curve.p[2]);
-  if (f.straight || f.radius > size) return std::nullopt;
-  Candidate out;
-  out.kind = StrokeKind::kCircle;
-  out.curve.count = 2;
-  out.curve.p.fill(Vector3d::Zero());
-  out.curve.p[0] = f.middle + (f.sagitta - f.radius) * f.up;
-  out.curve.p[1] = f.radius * plane_normal(arc.kind, arc.curve);
-  return out;
+  if (arc.kind != StrokeKind::kArc || plane_normal(arc.kind, arc.curve).isZero())
+    return std::nullopt;
+  PlainCurve curve;
+  curve.kind = arc.kind;
+  curve.p = arc.curve.p;
+  const PlainCurve circle = circle_of_arc(curve);
+  const double radius = circle.p[1].norm();
+  if (!(radius > 0 && radius < size)) return std::nullopt;
+  return candidate_of({circle.p[0], circle.p[1] / radius, radius});
 }
 
 // All images of a stroke, or of the circle that images of an arc cover.
