@@ -212,12 +212,27 @@ Sums read_piece(const EdgeWorld& world, int view, const CurvePoints& curve, int 
 
 double noise_of(const EdgelMap& map) { return std::max<double>(map.noise, kLeastNoise / 255); }
 
-// Variance of what copies beside strokes read, less the noise; NaN if there are too few.
-double clutter_of(const EdgeWorld& world, int view, const CurvePoints& strokes,
-                  const Image<uint8_t>& near) {
+// What copies beside strokes read, of one view or several.
+struct Clutter {
+  std::vector<double> readings;  // absolute
+  double noise = 0;              // sum of the variances that noise alone makes
+
+  void add(const Clutter& other) {
+    readings.insert(readings.end(), other.readings.begin(), other.readings.end());
+    noise += other.noise;
+  }
+  // Their variance, less the noise; NaN if there are too few.
+  double variance() const {
+    const double n = double(readings.size());
+    if (readings.size() < kFewestReadings) return NAN;
+    return std::max(0.0, std::pow(normal_sigma(readings), 2) - noise / n);
+  }
+};
+
+Clutter clutter_of(const EdgeWorld& world, int view, const CurvePoints& strokes,
+                   const Image<uint8_t>& near) {
   const double noise = noise_of(world.maps[view]);
-  std::vector<double> readings;
-  double mean_noise = 0;
+  Clutter out;
   for (size_t s = 0; s + 1 < strokes.first.size(); ++s) {
     const int last = strokes.first[s + 1];
     for (int at = strokes.first[s]; at < last; at += kPiece) {
@@ -225,14 +240,25 @@ double clutter_of(const EdgeWorld& world, int view, const CurvePoints& strokes,
           read_piece(world, view, strokes, at, std::min(at + kPiece, last), {near}, kEvery);
       for (int o = -kReach; o <= kReach; ++o)
         if (std::abs(o) >= kNearCopy && sums.tells(o)) {
-          readings.push_back(std::abs(sums.mean(o)));
-          mean_noise += noise * noise / sums.count[o + kReach];
+          out.readings.push_back(std::abs(sums.mean(o)));
+          out.noise += noise * noise / sums.count[o + kReach];
         }
     }
   }
-  if (readings.size() < kFewestReadings) return NAN;
-  mean_noise /= double(readings.size());
-  return std::max(0.0, std::pow(normal_sigma(std::move(readings)), 2) - mean_noise);
+  return out;
+}
+
+// Of each view; where one alone has too few readings, those of all together.
+std::vector<double> clutter_of_views(const std::vector<Clutter>& views) {
+  Clutter all;
+  for (const Clutter& c : views) all.add(c);
+  const double together = all.variance();
+  std::vector<double> out;
+  for (const Clutter& c : views) {
+    const double alone = c.variance();
+    out.push_back(std::isnan(alone) ? together : alone);
+  }
+  return out;
 }
 
 void mark_around(double x, double y, uint8_t ways, Image<uint8_t>* near) {
@@ -259,7 +285,7 @@ KnownEdges known_edges(const EdgeWorld& world, const CurvePoints& strokes,
                        const std::vector<std::vector<char>>& explained) {
   KnownEdges out;
   out.near.resize(world.maps.size());
-  out.clutter.assign(world.maps.size(), NAN);
+  std::vector<Clutter> clutter(world.maps.size());
   parallel_for(int(world.maps.size()), 1, [&](int v) {
     const EdgelMap& map = world.maps[v];
     if (!map.grey) return;
@@ -267,8 +293,9 @@ KnownEdges known_edges(const EdgeWorld& world, const CurvePoints& strokes,
     for (size_t i = 0; i < map.edgels.size(); ++i)
       if (explained[v][i]) mark_around(map.edgels[i].x, map.edgels[i].y, 255, &out.near[v]);
     add_known(world, v, strokes, &out);
-    out.clutter[v] = clutter_of(world, v, strokes, out.near[v]);
+    clutter[v] = clutter_of(world, v, strokes, out.near[v]);
   });
+  out.clutter = clutter_of_views(clutter);
   return out;
 }
 

@@ -14,7 +14,8 @@ namespace sketchsplat {
 struct KnownEdges {
   std::vector<Image<uint8_t>> near;
   /// Per view: variance of what the filter reads beside strokes, 4 to 8 px away, less that of the
-  /// noise [grey values, 0 to 1, squared]; NaN if there are too few.
+  /// noise [grey values, 0 to 1, squared]; of a view with too few, that of all together, NaN if
+  /// they have too few.
   std::vector<double> clutter;
 };
 /// `strokes`: of all strokes, points a pixel apart; `explained`: per view and edgel.

@@ -4,13 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
 #include <functional>
-#include <memory>
 #include <random>
 
 #include "edges/contrast/alarm_threshold.h"
 #include "edges/views/unexplained.h"
+#include "tests/support/painted.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {
@@ -33,36 +32,14 @@ std::vector<View> views_from_above() {
 }
 
 // Grey levels of the plane at a place, in a view.
-using Paint = std::function<double(const Vector2d& place, int view)>;
+using Plane = std::function<double(const Vector2d& place, int view)>;
 
-EdgeWorld painted(const Paint& paint, double noise, int seed) {
-  std::mt19937 rng(seed);
-  std::normal_distribution<double> grain(0, noise);
-  EdgeWorld world;
-  world.views = views_from_above();
-  world.footprint = kFootprint;
-  for (int v = 0; v < int(world.views.size()); ++v) {
-    const View& view = world.views[v];
-    const Vector3d eye = view.center_in_world();
-    auto part = std::make_shared<GreyPart>();
-    part->value = Image<uint16_t>(400, 400);
-    for (int y = 0; y < 400; ++y)
-      for (int x = 0; x < 400; ++x) {
-        const Vector3d ray =
-            view.cam_from_world.rotation.transpose() * view.camera.ray(Vector2d(x, y));
-        const Vector3d place = eye - ray * (eye.z() / ray.z());
-        const double level = std::round(paint(place.head<2>(), v) + grain(rng));
-        part->value.at(x, y) = uint16_t(std::clamp(level, 0.0, 255.0) / 255 * GreyPart::kOne);
-      }
-    EdgelMap map;
-    map.width = map.height = 400;
-    map.noise = float(noise / 255);
-    map.chain = {0};
-    map.grey = part;
-    world.maps.push_back(map);
-    world.plane_normal.emplace_back(3, 0);
-  }
-  return world;
+EdgeWorld painted(const Plane& plane, double noise, int seed) {
+  const auto level = [&](const Vector3d& eye, const Vector3d& ray, int view) {
+    const Vector3d place = eye - ray * (eye.z() / ray.z());
+    return plane(place.head<2>(), view);
+  };
+  return test::painted(views_from_above(), kFootprint, level, noise, seed);
 }
 
 CurvePoints line(const Vector3d& a, const Vector3d& b) {
@@ -91,7 +68,7 @@ ContrastJudge judge_of(const EdgeWorld& world) {
 }
 
 // Blotches that lie on the plane in all views: sums of waves of all directions, 4 to 30 px long.
-Paint blotches(int seed, double contrast) {
+Plane blotches(int seed, double contrast) {
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> any(0, 2 * M_PI), wave(4, 30);
   std::vector<Eigen::Vector3d> waves;
@@ -215,6 +192,19 @@ TEST(ContrastJudge, ASmallHoleNextToABorderShowsAndWhatIsBesideItDoesNot) {
   EXPECT_LT(ContrastJudge(without, known, no_edgels(without), {}).judge(rim).nats, 0);
   // Half of the hole beside another one is no hole of its own.
   EXPECT_LT(judge.judge(circle_on_plane({-6 * kFootprint, 0}, 6)).nats, 0.2 * nats);
+}
+
+// In small pictures no view has strokes enough to tell its clutter by itself.
+TEST(ContrastJudge, ViewsWithFewStrokesKnowTheirClutterFromAllTogether) {
+  const double border = 14 * kFootprint, radius = 6 * kFootprint;
+  const auto plate = [&](const Vector2d& p, int) {
+    return (p.x() > border ? 60 : 120) + (p.norm() < radius ? 25 : 0);
+  };
+  const EdgeWorld world = painted(plate, 5, 1);
+  const CurvePoints known = line_on_plane({border, 0}, kUpright, 80);
+  EXPECT_GT(
+      ContrastJudge(world, known, no_edgels(world), {}).judge(circle_on_plane(kOrigin, 6)).nats,
+      15);
 }
 
 // Copies of its rim do not go beyond its middle, where the other side of it is.

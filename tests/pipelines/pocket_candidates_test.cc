@@ -5,18 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <random>
+#include <vector>
 
 #include "pipelines/candidates/add_missing.h"
 #include "sketches/curve/curve.h"
+#include "tests/support/painted.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {
 namespace {
 
 using namespace test;  // NOLINT
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kDistance = 2.5;
@@ -40,32 +39,13 @@ double level_of(const Vector3d& eye, const Vector3d& ray, double depth) {
 }
 
 EdgeWorld world_of(double depth) {
-  std::mt19937 rng(1);
-  std::normal_distribution<double> grain(0, 2);
-  EdgeWorld world;
-  world.footprint = kDistance / 500;
-  for (const View& view : ring_of_views(60, Vector3d::Zero(), kDistance)) {
-    const Vector3d eye = view.center_in_world();
-    if (eye.z() < 0.1 * kDistance) continue;
-    auto part = std::make_shared<GreyPart>();
-    part->value = Image<uint16_t>(400, 400);
-    for (int y = 0; y < 400; ++y)
-      for (int x = 0; x < 400; ++x) {
-        const Vector3d ray =
-            view.cam_from_world.rotation.transpose() * view.camera.ray(Vector2d(x, y));
-        const double level = level_of(eye, ray, depth) + grain(rng);
-        part->value.at(x, y) = uint16_t(std::clamp(level, 0.0, 255.0) / 255 * GreyPart::kOne);
-      }
-    EdgelMap map;
-    map.width = map.height = 400;
-    map.noise = 2.f / 255;
-    map.chain = {0};
-    map.grey = part;
-    world.views.push_back(view);
-    world.maps.push_back(map);
-    world.plane_normal.emplace_back(3, 0);
-  }
-  return world;
+  std::vector<View> views;
+  for (const View& view : ring_of_views(60, Vector3d::Zero(), kDistance))
+    if (view.center_in_world().z() >= 0.1 * kDistance) views.push_back(view);
+  const auto level = [&](const Vector3d& eye, const Vector3d& ray, int) {
+    return level_of(eye, ray, depth);
+  };
+  return painted(views, kDistance / 500, level, 2, 1);
 }
 
 void add_square(double half, double height, Sketch* s) {
