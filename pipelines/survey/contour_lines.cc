@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 // [px] of the line from the curve: lines of sight that touch the surface meet outside of it.
 constexpr double kTouchPx = 4;
-constexpr double kLonger = 0.2;     // of its length, that a line may end before the curve
+constexpr double kLonger = 0.5;     // of its length, that a line may end before the curve
 constexpr double kFromEndPx = 4;    // [px] of the touch from the ends of the curve
 constexpr double kAlong = 0.7;      // cosine of line and curve that run alongside
 constexpr double kNearPx = 2;       // [px] of the contour from the line, where it is seen as one

@@ -81,7 +81,7 @@ TEST(ContourLines, TheSideOfACylinderThatOnlyGrazingViewsShowIsItsContour) {
   const EdgeWorld world = cylinder(NAN);
   const double at = contours_of(world.views[world.views.size() / 2])[0];
   EXPECT_GT(nats_at(world, side(at)), 3);
-  const Vector3d end = on_side(at, 0.7), begin = on_side(at, 0.28);
+  const Vector3d end = on_side(at, 0.65), begin = on_side(at, 0.35);
   EXPECT_GT(nats_at(world, {begin, end}), 3) << "nor need it reach the rims";
 }
 
