@@ -127,6 +127,7 @@ void SurfelSet::lay(int i, const Eigen::Vector3d& center, const Eigen::Vector3d&
 
 SurfelCloud SurfelSet::cloud(const Eigen::Matrix3Xd& color) const {
   SurfelCloud c;
+  if (values.cols() == 0) return c;  // nothing has no rows in memory
   c.center = values.middleRows<3>(kCenter);
   c.rotation = values.middleRows<4>(kRotation);
   c.log_scale = values.middleRows<2>(kLogScale);
