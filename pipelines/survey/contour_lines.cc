@@ -22,6 +22,9 @@ constexpr double kNearPx = 2;       // [px] of the contour from the line, where 
 constexpr double kGrazes = 0.2;     // sine of an angle at which a view sees the contour, too
 constexpr double kSeen = 0.5;       // of its samples, of a line that a view sees
 constexpr double kAccident = 0.05;  // of the views that see something else there
+// [nat] beforehand: of ten such lines one is an edge, since edges end where others do, and not
+// before a curve that goes on smoothly.
+const double kPrior = std::log(10);
 
 // Of the surface that holds the line and the curve at its foot.
 struct Surface {
@@ -93,7 +96,7 @@ double nats_of(const Surface& s, const Vector3d& middle, const Vector3d& way,
     const bool says = sees[v] || (!grazes && sine > 0 && world.hull.surely_visible(middle, camera));
     if (says) ++(grazes ? near : far)[int(sees[v])];
   }
-  return any_rate(near[1], near[0]) + far[1] * std::log(kAccident) +
+  return kPrior + any_rate(near[1], near[0]) + far[1] * std::log(kAccident) +
          far[0] * std::log(1 - kAccident) - any_rate(near[1] + far[1], near[0] + far[0]);
 }
 
