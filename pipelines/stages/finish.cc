@@ -21,6 +21,7 @@ constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at las
 // Reach of the last polish. What lies farther off is something else beside the stroke, to which a
 // wider reach would draw it: the outline of a round that leaves an edge, as a rule.
 constexpr double kNearPx = 0.3, kNear = 3;  // and in standard deviations
+constexpr int kSettleRounds = 3;            // of a polish that what was added needs
 constexpr double kProbable = 0.5;  // of an edge that something else than its edgels tells of
 
 // What strokes are called when only some of them stay; -1 for the others.
@@ -60,6 +61,23 @@ Evidence unseen() {
   Evidence e;
   e.opacity = 0;
   return e;
+}
+
+// Strokes from `first` on, but those of groups, on edgels of theirs: contrast, which tells that
+// they are there, is as good within a pixel.
+Sketch on_edgels(Sketch sketch, int first, const std::vector<bool>& group, const EdgeWorld& world,
+                 PolishOptions options) {
+  options.rounds = kSettleRounds;
+  const Sketch polished = polish(sketch, world, options);
+  for (int s = first; s < sketch.size(); ++s) {
+    if (group[s - first]) continue;
+    const Stroke& stroke = sketch.strokes[s];
+    for (int k = 0; k < num_handles(stroke.kind); ++k)
+      sketch.handles.col(stroke.handle + k) = polished.handles.col(polished.strokes[s].handle + k);
+    if (is_closed(stroke.kind)) continue;
+    for (const int n : {stroke.begin, stroke.end}) sketch.nodes.col(n) = polished.nodes.col(n);
+  }
+  return sketch;
 }
 
 // Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
@@ -151,10 +169,12 @@ WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
   Stage stage("missing", 0, report, progress);
   const MissingEdges missing = add_missing(sketch, world, options.missing);
   int added = int(missing.nats.size());
-  const Sketch probable = added == 0
-                              ? sketch
-                              : without_improbable(missing.sketch, missing.sketch.size() - added,
-                                                   missing.group, world, options, &added);
+  Sketch probable = sketch;
+  if (added > 0) {
+    const int first = missing.sketch.size() - added;
+    probable = on_edgels(missing.sketch, first, missing.group, world, options.polish);
+    probable = without_improbable(probable, first, missing.group, world, options, &added);
+  }
   report->counts.push_back({"candidates", double(missing.candidates)});
   report->counts.push_back({"strokes_missing", double(added)});
   stage.result(std::to_string(added) + " of " + std::to_string(missing.candidates) +
