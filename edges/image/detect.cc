@@ -264,6 +264,7 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
 std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep, int min_chain,
                              EdgelMap* to) {
   std::vector<int> kept;
+  const bool judged = !from.meaning.empty() && int(to->meaning.size()) == to->num_chains();
   if (to->chain.empty()) to->chain.push_back(int(to->edgels.size()));
   for (int c = 0; c < from.num_chains(); ++c)
     for (int begin = from.chain[c], end; begin < from.chain[c + 1]; begin = end + 1) {
@@ -271,7 +272,10 @@ std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep
       if (end == begin || end - begin < min_chain) continue;
       for (int k = begin; k < end; ++k) kept.push_back(k), to->edgels.push_back(from.edgels[k]);
       to->chain.push_back(int(to->edgels.size()));
-      if (!from.meaning.empty()) to->meaning.push_back(from.meaning[c]);
+      if (judged)
+        to->meaning.push_back(from.meaning[c]);
+      else
+        to->meaning.clear();
     }
   return kept;
 }

@@ -70,7 +70,7 @@ void build_lookup(EdgelMap* map, double reach_px);
 
 /// Appends the runs of at least `min_chain` edgels within one chain that are marked, each as a
 /// chain of its own; returns where they were. `keep`: one mark per edgel of `from`. The lookup of
-/// `to` has to be built anew.
+/// `to` has to be built anew. Unless all chains of both were judged, none of `to` is afterwards.
 std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep, int min_chain,
                              EdgelMap* to);
 

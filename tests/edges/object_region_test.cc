@@ -227,6 +227,23 @@ TEST(Focus, TheMostMeaningfulChainsAreTaken) {
   EXPECT_EQ(most_meaningful(unjudged, 1).edgels.size(), map.edgels.size());
 }
 
+// As surfels add theirs to those of the picture.
+TEST(Focus, WhereSomeChainsWereJudgedAndOthersNotNoneIs) {
+  const View view = ring_of_views(3, {0.5, 1.5, 0.1}, 6)[0];
+  const EdgelMap judged = two_chains(view);
+  EdgelMap unjudged = judged;
+  unjudged.meaning.clear();
+  const std::vector<char> all(judged.edgels.size(), 1);
+  EdgelMap both;
+  append_runs(judged, all, 1, &both);
+  append_runs(judged, all, 1, &both);
+  EXPECT_EQ(both.meaning, (std::vector<float>{2, 5, 2, 5}));
+  append_runs(unjudged, all, 1, &both);
+  append_runs(judged, all, 1, &both);
+  EXPECT_EQ(both.num_chains(), 8);
+  EXPECT_TRUE(both.meaning.empty());
+}
+
 TEST(Focus, EdgelsOutsideOfTheRegionGo) {
   std::vector<View> views;  // from above and below, where the lines are far apart in the images
   for (const View& v : ring_of_views(20, {0.5, 1.5, 0.1}, 6))
