@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <string>
 
 #include "pipelines/method/reconstruct.h"
 #include "tests/pipelines/rendered_part.h"
@@ -17,6 +18,7 @@ struct Expected {
   const char* part;
   double f5, precision5;    ///< per cent, at least
   double strokes_per_edge;  ///< at most
+  int views = 30, pixels = 400;
 };
 void PrintTo(const Expected& e, std::ostream* out) { *out << e.part; }
 
@@ -25,7 +27,7 @@ class Part : public testing::TestWithParam<Expected> {};
 TEST_P(Part, ItsEdgesAreFoundAndNoContourIsTakenForOne) {
   const Expected expected = GetParam();
   const TempFolder folder;
-  write_part(expected.part, 30, 400, 1, folder.path());
+  write_part(expected.part, expected.views, expected.pixels, 1, folder.path());
   const Sketch sketch = reconstruct_as_ever(open_scene(folder.path())).sketch;
   EXPECT_TRUE(validate(sketch).empty());
   const Evaluation e = score(sketch, folder.path());
@@ -42,9 +44,10 @@ INSTANTIATE_TEST_SUITE_P(
     Synthetic, Part,
     testing::Values(Expected{"cut-cylinder", 95, 97, 2}, Expected{"frustum", 95, 97, 1.5},
                     Expected{"l-bracket", 92, 97, 1.3}, Expected{"box-fillet", 85, 92, 1.3},
-                    Expected{"dome-plate", 94, 97, 1.3}, Expected{"flange", 93, 98, 1.1}),
+                    Expected{"dome-plate", 94, 97, 1.3}, Expected{"flange", 93, 98, 1.1},
+                    Expected{"cut-cylinder", 97, 97, 1, 16, 300}),
     [](const auto& info) {
-      std::string name = info.param.part;
+      std::string name = info.param.part + ("_" + std::to_string(info.param.pixels));
       std::replace(name.begin(), name.end(), '-', '_');
       return name;
     });
