@@ -65,19 +65,14 @@ Evidence unseen() {
 
 // Strokes from `first` on, but those of groups, on edgels of theirs: contrast, which tells that
 // they are there, is as good within a pixel.
-Sketch on_edgels(Sketch sketch, int first, const std::vector<bool>& group, const EdgeWorld& world,
-                 PolishOptions options) {
+Sketch on_edgels(const Sketch& sketch, int first, const std::vector<bool>& group,
+                 const EdgeWorld& world, PolishOptions options) {
   options.rounds = kSettleRounds;
   const Sketch polished = polish(sketch, world, options);
-  for (int s = first; s < sketch.size(); ++s) {
-    if (group[s - first]) continue;
-    const Stroke& stroke = sketch.strokes[s];
-    for (int k = 0; k < num_handles(stroke.kind); ++k)
-      sketch.handles.col(stroke.handle + k) = polished.handles.col(polished.strokes[s].handle + k);
-    if (is_closed(stroke.kind)) continue;
-    for (const int n : {stroke.begin, stroke.end}) sketch.nodes.col(n) = polished.nodes.col(n);
-  }
-  return sketch;
+  std::vector<ControlPoints> controls;
+  for (int s = 0; s < sketch.size(); ++s)
+    controls.push_back(control_points(s < first || group[s - first] ? sketch : polished, s));
+  return with_control_points(sketch, controls);
 }
 
 // Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
