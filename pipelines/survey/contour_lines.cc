@@ -22,8 +22,8 @@ constexpr double kNearPx = 2;       // [px] of the contour from the line, where 
 constexpr double kGrazes = 0.2;     // sine of an angle at which a view sees the contour, too
 constexpr double kSeen = 0.5;       // of its samples, of a line that a view sees
 constexpr double kAccident = 0.05;  // of the views that see something else there
-// [nat] beforehand: of ten such lines one is an edge, since edges end where others do, and not
-// before a curve that goes on smoothly.
+// [nat] beforehand, assumed: of ten such lines one is an edge, since edges end where others do, and
+// not before a curve that goes on smoothly.
 const double kPrior = std::log(10);
 
 // Of the surface that holds the line and the curve at its foot.
