@@ -61,14 +61,17 @@ struct OnSurface {
   SurfaceKind surface;
   std::vector<double> t;
   double weight;
+  std::vector<int> block;  // of each control point: a loop through one node has that twice
 
   template <typename T>
   bool operator()(T const* const* blocks, T* residuals) const {
     const T* u = blocks[0];
     const Vec3<T> origin(u[0], u[1], u[2]), axis = Vec3<T>(u[3], u[4], u[5]).normalized();
     Vec3<T> control[4], position, derivative;
-    for (int k = 0; k < num_controls(kind); ++k)
-      control[k] = Vec3<T>(blocks[k + 1][0], blocks[k + 1][1], blocks[k + 1][2]);
+    for (size_t k = 0; k < block.size(); ++k) {
+      const T* p = blocks[block[k]];
+      control[k] = Vec3<T>(p[0], p[1], p[2]);
+    }
     for (size_t i = 0; i < t.size(); ++i) {
       evaluate_curve<T>(kind, control, t[i], &position, &derivative);
       residuals[i] =
@@ -201,6 +204,7 @@ class Adjustment {
       const std::vector<double*> first = controls_of(&solid_->edges, rims[0]),
                                  other = controls_of(&solid_->edges, rims[i]);
       for (size_t k = 0; k < first.size(); ++k) {
+        if (first[k] == other[k]) continue;  // rims that meet
         auto* cost = new ceres::DynamicAutoDiffCostFunction<Over, 9>(new Over{closed && k > 0});
         cost->AddParameterBlock(9);
         cost->AddParameterBlock(3);
@@ -229,11 +233,14 @@ class Adjustment {
 
   void tie(int stroke, int surface, const std::vector<double>& t, double weight) {
     const StrokeKind kind = solid_->edges.strokes[stroke].kind;
-    auto* cost = new ceres::DynamicAutoDiffCostFunction<OnSurface, 9>(
-        new OnSurface{kind, solid_->surfaces[surface].kind, t, weight});
+    auto* residual = new OnSurface{kind, solid_->surfaces[surface].kind, t, weight, {}};
+    auto* cost = new ceres::DynamicAutoDiffCostFunction<OnSurface, 9>(residual);
     std::vector<double*> blocks = {unknowns_[surface].data()};
     cost->AddParameterBlock(9);
     for (double* control : controls_of(&solid_->edges, stroke)) {
+      const auto same = std::find(blocks.begin(), blocks.end(), control);
+      residual->block.push_back(int(same - blocks.begin()));
+      if (same != blocks.end()) continue;
       blocks.push_back(control);
       cost->AddParameterBlock(3);
     }
