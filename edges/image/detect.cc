@@ -14,6 +14,7 @@
 #include "edges/image/coarser.h"
 #include "edges/image/gradient.h"
 #include "edges/image/meaningful.h"
+#include "edges/image/sharpen.h"
 
 namespace sketchsplat {
 namespace {
@@ -26,9 +27,13 @@ constexpr double kPedestal = 0.5;  // contrast between object and background whe
 
 // The part of the picture that can hold edges, as one channel.
 struct Composite {
-  cv::Mat1f value;
-  cv::Mat1b inside;  ///< fully opaque: 255, else 0
+  cv::Mat1f grey, alpha;
+  cv::Mat1f value;   // alpha * (grey + pedestal), or, without alpha, grey itself
+  cv::Mat1b inside;  // fully opaque: 255, else 0
   int x0 = 0, y0 = 0;
+
+  // The outline is where alpha says, whatever colour hides outside it.
+  void put_mask_on() { value = alpha.empty() ? grey : cv::Mat1f(alpha.mul(grey + kPedestal)); }
 };
 
 cv::Rect opaque_box(const Image<float>& alpha) {
@@ -44,7 +49,6 @@ cv::Rect opaque_box(const Image<float>& alpha) {
   return x1 < 0 ? cv::Rect() : cv::Rect(x0, y0, x1 - x0 + 1, y1 - y0 + 1);
 }
 
-// alpha * (grey + pedestal): the outline is where alpha says, whatever colour hides outside it.
 Composite composite(const Picture& picture, const DetectOptions& options) {
   Composite c;
   const int w = picture.width(), h = picture.height();
@@ -58,17 +62,19 @@ Composite composite(const Picture& picture, const DetectOptions& options) {
     box &= cv::Rect(0, 0, w, h);  // an object that leaves the image does not end at its frame
   }
   c.x0 = box.x, c.y0 = box.y;
-  c.value.create(box.height, box.width);
+  c.grey.create(box.height, box.width);
   c.inside.create(box.height, box.width);
+  if (masked) c.alpha.create(box.height, box.width);
   for (int v = 0; v < box.height; ++v)
     for (int u = 0; u < box.width; ++u) {
       const int x = u + box.x, y = v + box.y;
       const float a = masked ? picture.alpha.at(x, y) : 1.f;
-      const float grey = 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
-                         0.114f * picture.blue.at(x, y);
-      c.value(v, u) = masked ? a * (grey + float(kPedestal)) : grey;
+      c.grey(v, u) = 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
+                     0.114f * picture.blue.at(x, y);
       c.inside(v, u) = a >= 1.f ? 255 : 0;
+      if (masked) c.alpha(v, u) = a;
     }
+  c.put_mask_on();
   return c;
 }
 
@@ -189,11 +195,6 @@ void mark_outline(const Image<float>& alpha, EdgelMap* map) {
   }
 }
 
-// White noise of variance 1 has gradient variance 1 / (8 pi sigma^4) by component.
-double noise_of_gradient(double noise, double sigma_px) {
-  return noise / (std::sqrt(8 * M_PI) * sigma_px * sigma_px);
-}
-
 // Grey levels are whole numbers, so slow shading becomes steps, which thresholds have to exceed;
 // but noise dithers them: on the mean the steps of a quantizer of step 1 are as high as
 // exp(-2 pi^2 n^2) after noise of standard deviation n (Widrow, Kollar: Quantization noise, 2008),
@@ -212,8 +213,10 @@ struct Search {
   double beyond_px = 0;  // see Picture
   double noise = 0;      // as if it were white, grey values in [0, 1]
   double floor = 1;      // of kHighFloor and kLowFloor
+  Sharpening sharpening = {};
 
-  double sigma_of_gradient() const { return noise_of_gradient(noise, options.sigma_px); }
+  double noise_left() const { return noise * sharpening.noise_left(options.sigma_px); }
+  double sigma_of_gradient() const { return noise_of_gradient(noise_left(), options.sigma_px); }
 };
 
 // Edgels of one scale, in pixels of the composite.
@@ -241,22 +244,59 @@ void detect_coarser(const Composite& c, const Search& finest, EdgelMap* map) {
   }
 }
 
-}  // namespace
-
-EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
+EdgelMap detect_in(const Composite& c, const Picture& picture, const Search& search) {
   EdgelMap map;
   map.width = picture.width(), map.height = picture.height();
-  const Composite c = composite(picture, options);
-  if (c.value.rows < 3 || c.value.cols < 3) return map;
-  const Noise noise = measure_noise(c);
-  map.noise = float(noise.fine);
-  map.grey = grey_part(c);
-  const Search search = {options, picture.beyond_px, noise.fine, steps_left(noise)};
+  map.noise = float(search.noise_left());
   detect_at(c, search, &map);
   detect_coarser(c, search, &map);
   for (Edgel& e : map.edgels) e.x += c.x0, e.y += c.y0;
   map.blur = median_width(map);
   if (!picture.alpha.empty()) mark_outline(picture.alpha, &map);
+  return map;
+}
+
+// [px] that the camera blurred edgels by which a detector of `sigma_px` found, as this share of
+// them tells; 0 if few do.
+double blur_of(std::vector<float> widths, double share, double sigma_px) {
+  constexpr size_t kFew = 50;
+  if (widths.size() < kFew) return 0;
+  const auto at = widths.begin() + ptrdiff_t(share * double(widths.size()));
+  std::nth_element(widths.begin(), at, widths.end());
+  return std::sqrt(std::max(0.0, double(*at) * *at - sigma_px * sigma_px));
+}
+
+// Makes a picture sharper in which edgels were found; false if a tenth of them say that it is
+// sharp: rounds are not, and neither are edges that hide from one another. A mask that somebody
+// drew, or made of a silhouette, is sharp, however blurred what it lies on is, and stays as it is.
+bool sharpen_blurred(const EdgelMap& found, Search* search, Composite* c) {
+  const DetectOptions& o = search->options;
+  if (o.most_blur_px <= 0) return false;
+  std::vector<float> outline, inside;
+  for (const Edgel& e : found.edgels) (e.outline ? outline : inside).push_back(e.width);
+  const bool drawn = !c->alpha.empty() && blur_of(outline, 0.5, o.sigma_px) <= o.most_blur_px;
+  if (!drawn) inside.insert(inside.end(), outline.begin(), outline.end());
+  if (blur_of(inside, 0.1, o.sigma_px) <= o.most_blur_px) return false;
+  const double blur = blur_of(std::move(inside), 0.5, o.sigma_px);
+  cv::Mat1f* what = drawn ? &c->grey : &c->value;
+  search->sharpening = sharpening_of(*what, blur, search->noise, o.sigma_px);
+  sharpen(search->sharpening, what);
+  if (drawn) c->put_mask_on();
+  return true;
+}
+
+}  // namespace
+
+EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
+  EdgelMap map;
+  map.width = picture.width(), map.height = picture.height();
+  Composite c = composite(picture, options);
+  if (c.value.rows < 3 || c.value.cols < 3) return map;
+  const Noise noise = measure_noise(c);
+  Search search = {options, picture.beyond_px, noise.fine, steps_left(noise)};
+  map = detect_in(c, picture, search);
+  if (sharpen_blurred(map, &search, &c)) map = detect_in(c, picture, search);
+  map.grey = grey_part(c);
   build_lookup(&map, options.reach_px);
   return map;
 }

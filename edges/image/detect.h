@@ -87,17 +87,19 @@ struct MeaningOptions {
 struct DetectOptions {
   double sigma_px = 1.0;  ///< [px] smoothing of the gradient
   int coarser = 2;        ///< further scales, each sqrt(2) times the last, where noise hides edges
-  double high_sigma = 7.0;  ///< an edge starts at this many standard deviations of the noise
-  double low_sigma = 3.0;   ///< and is followed down to this many
-  int min_chain = 6;        ///< [px] shorter chains are dropped
-  double reach_px = 4.0;    ///< [px] of the look-up
+  double high_sigma = 7.0;    ///< an edge starts at this many standard deviations of the noise
+  double low_sigma = 3.0;     ///< and is followed down to this many
+  int min_chain = 6;          ///< [px] shorter chains are dropped
+  double reach_px = 4.0;      ///< [px] of the look-up
+  double most_blur_px = 1.0;  ///< [px] pictures blurred by more are sharpened; 0: none
   MeaningOptions meaning;
 };
 
 /// Edgels of a picture: Gaussian gradient, hysteresis at thresholds that follow the noise measured
 /// in this picture, position at the maximum along the normal; where a scale shows none, of coarser
-/// ones. Alpha, if any, is the mask: its outline is an edge, and colours outside it do not exist.
-/// An empty picture gives an empty map.
+/// ones. A blurred picture is sharpened (sharpen.h) when its edgels have told by how much it is.
+/// Alpha, if any, is the mask: its outline is an edge, and colours outside it do not exist. An
+/// empty picture gives an empty map.
 EdgelMap detect_edges(const Picture& picture, const DetectOptions& options);
 
 /// Edge map in [0, 1] for people and rasterizers: a ridge of `sigma_px` along every edgel.

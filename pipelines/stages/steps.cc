@@ -18,6 +18,7 @@ Step step(const std::string& name, T* value) {
 
 std::vector<Step> method_steps(ReconstructOptions* o) {
   return {step("coarse-scales", &o->detect.coarser),
+          step("sharpening", &o->detect.most_blur_px),
           step("conics", &o->segment.conics),
           step("rewrite", &o->rechain.on),
           step("silhouettes", &o->silhouettes),

@@ -104,7 +104,7 @@ TEST_F(Program, AStepIsLeftOutByItsNameAndAnOptionThatIsGoneNamesWhatReplacesIt)
   EXPECT_EQ(run(work + " --without conics,surfel-merge --without close").status, 0);
   for (const auto& [given, answer] : std::vector<std::pair<std::string, std::string>>{
            {"--without conic",
-            "--without: expected none or some of coarse-scales, conics, rewrite, "},
+            "--without: expected none or some of coarse-scales, sharpening, conics, "},
            {"--without none,conics", "got 'none'"},
            {"--no-conics", "unknown option --no-conics, replaced by --without conics (see "},
            {"--surfel-planes 0", "replaced by --without surfel-planes "},
