@@ -48,7 +48,8 @@ double Sharpening::noise_left(double sigma_px) const {
 // frequency f before, have a mean square gradient of the integral of (2 pi f)^2 c / f^3
 // exp(-4 pi^2 s^2 f^2) over all frequencies, which is 2 pi^(5/2) c / s.
 Sharpening sharpening_of(const cv::Mat1f& value, double blur_px, double noise, double sigma_px) {
-  constexpr double kLeft = 1.3;  // [px]: little is gained by more, and noise grows
+  // Little is gained by more, and noise grows.
+  constexpr double kLeft = 1.3, kShare = 0.6;        // [px]; of the blur
   const double least = 1 / (255 * std::sqrt(12.0));  // of values that are whole numbers
   const double white = std::max(noise, least), in_gradient = noise_of_gradient(white, sigma_px);
   cv::Mat1f x, y;
@@ -56,7 +57,7 @@ Sharpening sharpening_of(const cv::Mat1f& value, double blur_px, double noise, d
   const double gradient = (x.dot(x) + y.dot(y)) / double(value.total());
   const double steps = std::max(gradient - 2 * in_gradient * in_gradient, 1e-12) *
                        std::hypot(blur_px, sigma_px) / (2 * std::pow(M_PI, 2.5));
-  return {blur_px, kLeft, white * white / steps};
+  return {blur_px, std::max(kLeft, kShare * blur_px), white * white / steps};
 }
 
 void sharpen(const Sharpening& how, cv::Mat1f* value) {

@@ -71,6 +71,12 @@ TEST(Sharpen, HoldsBackMoreWhereStepsAreFainterOrNoiseIsStronger) {
       << "grey levels are whole numbers";
 }
 
+TEST(Sharpen, LeavesMoreOfAStrongBlur) {
+  const cv::Mat1f noise = white_noise(50, 0.1);
+  EXPECT_NEAR(sharpening_of(noise, 1.5, 0.01, 1).left_px, 1.3, 1e-9);
+  EXPECT_NEAR(sharpening_of(noise, 5, 0.01, 1).left_px, 3, 1e-9);
+}
+
 // Bright bars of 7 px, 40 px apart, blurred, with noise; with a mask, if asked, whose ends are
 // sharp.
 Picture bars(double blur, bool masked) {
