@@ -261,23 +261,23 @@ EdgelMap detect_in(const Composite& c, const Picture& picture, const Search& sea
 double blur_of(std::vector<float> widths, double share, double sigma_px) {
   constexpr size_t kFew = 50;
   if (widths.size() < kFew) return 0;
-  const auto at = widths.begin() + ptrdiff_t(share * double(widths.size()));
-  std::nth_element(widths.begin(), at, widths.end());
-  return std::sqrt(std::max(0.0, double(*at) * *at - sigma_px * sigma_px));
+  const double width = quantile(std::move(widths), share);
+  return std::sqrt(std::max(0.0, width * width - sigma_px * sigma_px));
 }
 
 // Makes a picture sharper in which edgels were found; false if a tenth of them say that it is
 // sharp: rounds are not, and neither are edges that hide from one another. A mask that somebody
 // drew, or made of a silhouette, is sharp, however blurred what it lies on is, and stays as it is.
 bool sharpen_blurred(const EdgelMap& found, Search* search, Composite* c) {
+  constexpr double kSharpest = 0.1, kHalf = 0.5;  // of the edgels
   const DetectOptions& o = search->options;
   if (o.most_blur_px <= 0) return false;
   std::vector<float> outline, inside;
   for (const Edgel& e : found.edgels) (e.outline ? outline : inside).push_back(e.width);
-  const bool drawn = !c->alpha.empty() && blur_of(outline, 0.5, o.sigma_px) <= o.most_blur_px;
+  const bool drawn = !c->alpha.empty() && blur_of(outline, kHalf, o.sigma_px) <= o.most_blur_px;
   if (!drawn) inside.insert(inside.end(), outline.begin(), outline.end());
-  if (blur_of(inside, 0.1, o.sigma_px) <= o.most_blur_px) return false;
-  const double blur = blur_of(std::move(inside), 0.5, o.sigma_px);
+  if (blur_of(inside, kSharpest, o.sigma_px) <= o.most_blur_px) return false;
+  const double blur = blur_of(std::move(inside), kHalf, o.sigma_px);
   cv::Mat1f* what = drawn ? &c->grey : &c->value;
   search->sharpening = sharpening_of(*what, blur, search->noise, o.sigma_px);
   sharpen(search->sharpening, what);
