@@ -4,9 +4,10 @@
 
     batch_throughput.py BINARY --work DIR [--scenes 100] [--jobs 1 2]
 
-Makes small scenes of built-in parts, reconstructs and scores them with `batch`, and by `reconstruct`
-and `evaluate` of each in as many streams, in turns. Prints seconds, scenes a core and minute, and the
-share of the throughput by hand that the batch reaches. Exit status 0 if that is 95 % or more.
+Makes small scenes of built-in parts, reconstructs and scores them with `batch`, and then by
+`reconstruct` and `evaluate` of each in as many streams. Prints seconds, scenes a core and minute,
+and the share of the throughput by hand that the batch reaches. Exit status 0 if that is 95 % or
+more.
 """
 import argparse
 import os
