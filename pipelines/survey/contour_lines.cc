@@ -85,19 +85,19 @@ double any_rate(int hits, int misses) {
 
 double nats_of(const Surface& s, const Vector3d& middle, const Vector3d& way,
                const std::vector<char>& sees, const EdgeWorld& world) {
-  int near[2] = {0, 0}, far[2] = {0, 0};  // views that do not and that do see the line
+  int far[2] = {0, 0};  // views that do not and that do see the line
   for (size_t v = 0; v < world.views.size(); ++v) {
     const Vector3d camera = world.views[v].center_in_world();
     Vector3d d = camera - middle;
     d = (d - d.dot(way) * way).normalized();
     const double sine = s.normal.dot(d);
     const double off = s.radius * (1 - std::sqrt(std::max(0.0, 1 - sine * sine)));
-    const bool grazes = off < kNearPx * world.footprint || std::abs(sine) < kGrazes;
-    const bool says = sees[v] || (!grazes && sine > 0 && world.hull.surely_visible(middle, camera));
-    if (says) ++(grazes ? near : far)[int(sees[v])];
+    // Views that graze see a contour there in any case, be there an edge or not.
+    if (off < kNearPx * world.footprint || std::abs(sine) < kGrazes) continue;
+    if (sees[v] || (sine > 0 && world.hull.surely_visible(middle, camera))) ++far[int(sees[v])];
   }
-  return kPrior + any_rate(near[1], near[0]) + far[1] * std::log(kAccident) +
-         far[0] * std::log(1 - kAccident) - any_rate(near[1] + far[1], near[0] + far[0]);
+  return kPrior + far[1] * std::log(kAccident) + far[0] * std::log(1 - kAccident) -
+         any_rate(far[1], far[0]);
 }
 
 }  // namespace
