@@ -76,7 +76,7 @@ class Pass {
                                options.false_strokes / kPasses)) {}
 
   MissingEdges run() {
-    out_ = {sketch_, {}, {}, {}, {}, all_.tests()};
+    out_ = {sketch_, {}, {}, {}, {}, {}, all_.tests()};
     std::vector<std::pair<double, int>> groups;  // the likeliest first
     for (const auto& [number, group] : all_.groups) groups.push_back({-at_first(group), number});
     std::sort(groups.begin(), groups.end());
@@ -123,14 +123,14 @@ class Pass {
     return KnownCurves(added_, px, kKnownPx * px).share(points) > kKnownShare;
   }
 
-  void add(int i, double nats, bool group) {
+  void add(int i, double nats, int group) {
     judge_.take(all_.points[i]);
     append(all_.candidates[i], &added_);
     out_.nats.push_back(nats);
     out_.group.push_back(group);
     const Candidate& c = all_.candidates[i];
-    if (group && c.kind == StrokeKind::kCircle) out_.rings.push_back(c.curve);
-    if (!group || is_closed(c.kind)) return;
+    if (group >= 0 && c.kind == StrokeKind::kCircle) out_.rings.push_back(c.curve);
+    if (group < 0 || is_closed(c.kind)) return;
     for (const Eigen::Vector3d& end : {c.curve.p[0], c.curve.p[c.curve.count - 1]}) {
       const Eigen::Matrix3Xd& nodes = sketch_.nodes;
       if ((nodes.colwise() - end).colwise().norm().minCoeff() > world_.footprint)
@@ -157,8 +157,9 @@ class Pass {
     if (!most_show(walls)) return;
     for (size_t k = 0; k < nats.size(); ++k) {
       const int i = group.members[k];
-      if (nats[k] > kAgainst && !is_known(all_.points[i])) add(i, nats[k], true);
+      if (nats[k] > kAgainst && !is_known(all_.points[i])) add(i, nats[k], int(out_.known.size()));
     }
+    out_.known.push_back(sum(group.known) + sum(group.known_floor));
   }
 
   void add_single(int i) {
@@ -169,7 +170,7 @@ class Pass {
     if (!(e.nats > least_) || !all_of_it_shows(e, options_.contrast.accident) ||
         judge_.beside(points, windows) > kBeside * e.nats || is_rim(world_, points, least_))
       return;
-    add(i, e.nats, false);
+    add(i, e.nats, -1);
   }
 
   const Sketch& sketch_;
@@ -188,7 +189,7 @@ class Pass {
 // they are what many views see.
 void drop_covered(int first, double px, MissingEdges* all) {
   std::vector<bool> of_group(all->sketch.size(), false), keep(all->sketch.size(), true);
-  for (int s = first; s < all->sketch.size(); ++s) of_group[s] = all->group[s - first];
+  for (int s = first; s < all->sketch.size(); ++s) of_group[s] = all->group[s - first] >= 0;
   const KnownCurves whole(keep_strokes(all->sketch, of_group), px, kKnownPx * px);
   for (int s = 0; s < first; ++s)
     keep[s] =
@@ -201,7 +202,7 @@ void drop_covered(int first, double px, MissingEdges* all) {
 
 MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
                          const MissingOptions& options) {
-  MissingEdges out{sketch, {}, {}, {}, {}, 0};
+  MissingEdges out{sketch, {}, {}, {}, {}, {}, 0};
   std::vector<CurvePoints> refused;
   // What was found leads to expect more: the other rim of a hole that is part of a pattern. In a
   // plane that is known two views tell a circle, but there are so many of these that others would
@@ -211,7 +212,8 @@ MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
     const MissingEdges more = Pass(out.sketch, world, options, ring_views, &refused).run();
     out.sketch = more.sketch;
     out.nats.insert(out.nats.end(), more.nats.begin(), more.nats.end());
-    out.group.insert(out.group.end(), more.group.begin(), more.group.end());
+    for (const int g : more.group) out.group.push_back(g < 0 ? g : int(out.known.size()) + g);
+    out.known.insert(out.known.end(), more.known.begin(), more.known.end());
     out.corners.insert(out.corners.end(), more.corners.begin(), more.corners.end());
     out.rings.insert(out.rings.end(), more.rings.begin(), more.rings.end());
     out.candidates += more.candidates;

@@ -19,7 +19,8 @@ struct MissingEdges {
   /// With the strokes that were added, after the others, without those that they run along.
   Sketch sketch;
   std::vector<double> nats;  ///< of each that was added
-  std::vector<bool> group;   ///< of each: was it added as one of many that are there or not?
+  std::vector<int> group;    ///< of each: which many, there or not together, it is one of; or -1
+  std::vector<double> known;  ///< [nat] of each group: that they are edges, by those known before
   std::vector<Eigen::Vector3d> corners;  ///< where those of groups end, but on known strokes
   std::vector<ControlPoints> rings;      ///< circles of groups
   int candidates = 0;                    ///< that were judged

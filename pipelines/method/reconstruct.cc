@@ -14,6 +14,7 @@
 #include "pipelines/method/family_start.h"
 #include "pipelines/method/scene_tags.h"
 #include "pipelines/stages/stages.h"
+#include "pipelines/survey/rounded.h"
 
 namespace sketchsplat {
 
@@ -82,7 +83,10 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   tell_stop(options, &report, progress);
   SolidSearch solid = close_solid(finished.sketch, world, *detector, options, &report, progress);
   finished = complete_sketch(std::move(finished), &solid, world, options, &report, progress);
-  rename_doubtful(leave_out_unsure(options.min_confidence, &finished), &solid);
+  const std::vector<bool> round =
+      solid.solid ? std::vector<bool>(finished.sketch.size())
+                  : rounded_strokes(finished.sketch, most.sketch, world, select_options(options));
+  rename_doubtful(leave_out_doubtful(options.min_confidence, round, &finished), &solid);
   const Sketch proposed = propose_hidden(finished.sketch, world, &report);
   report_sketch(finished, world, &report);
   const Blends blends = options.blends ? find_blends(finished.sketch, world, options) : Blends();

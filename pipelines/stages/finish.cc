@@ -65,29 +65,39 @@ Evidence unseen() {
 
 // Strokes from `first` on, but those of groups, on edgels of theirs: contrast, which tells that
 // they are there, is as good within a pixel.
-Sketch on_edgels(const Sketch& sketch, int first, const std::vector<bool>& group,
+Sketch on_edgels(const Sketch& sketch, int first, const std::vector<int>& group,
                  const EdgeWorld& world, PolishOptions options) {
   options.rounds = kSettleRounds;
   const Sketch polished = polish(sketch, world, options);
   std::vector<ControlPoints> controls;
   for (int s = 0; s < sketch.size(); ++s)
-    controls.push_back(control_points(s < first || group[s - first] ? sketch : polished, s));
+    controls.push_back(control_points(s < first || group[s - first] >= 0 ? sketch : polished, s));
   return with_control_points(sketch, controls);
 }
 
 // Strokes from `first` on that are edges more probably than not, and all before them. Contrast was
 // seen where they are: with it anything may have come that edgels do not bear out, and the borders
-// of rounds. Those of a group bear one another out.
-Sketch without_improbable(Sketch sketch, int first, const std::vector<bool>& group,
+// of rounds. Those of a group bear one another out, and are edges or rounds all together: what
+// looks most like an edge tells it, and what of them was known before.
+Sketch without_improbable(Sketch sketch, int first, const MissingEdges& missing,
                           const EdgeWorld& world, const ReconstructOptions& options, int* left) {
   const StrokeObservation o = with_evidence(world, options, &sketch);
   record_confidence(stroke_features(sketch, world, o), &sketch);
   const Observation wide = observe_rounds(sketch, world, 0);
   const RoundJudge rounds(world, wide, options.select.round);
+  std::vector<double> nats, of_group(missing.known.size(), INFINITY);
+  for (int s = 0; s < sketch.size(); ++s) {
+    nats.push_back(rounds.nats(s, nullptr));
+    const int g = s < first ? -1 : missing.group[s - first];
+    if (g >= 0) of_group[g] = std::min(of_group[g], nats[s] - missing.known[g]);
+  }
+  const double odds = odds_of_round({nats.begin(), nats.begin() + first});
   std::vector<bool> keep(sketch.size(), true);
-  for (int s = first; s < sketch.size(); ++s)
-    keep[s] = group[s - first] ||
-              (sketch.evidence[s].confidence >= kProbable && rounds.nats(s, nullptr) <= 0);
+  for (int s = first; s < sketch.size(); ++s) {
+    const int g = missing.group[s - first];
+    keep[s] = g >= 0 ? of_group[g] + std::log(odds) <= 0
+                     : sketch.evidence[s].confidence >= kProbable && nats[s] <= 0;
+  }
   *left = int(std::count(keep.begin() + first, keep.end(), true));
   return keep_strokes(sketch, keep);
 }
@@ -168,7 +178,7 @@ WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
   if (added > 0) {
     const int first = missing.sketch.size() - added;
     probable = on_edgels(missing.sketch, first, missing.group, world, options.polish);
-    probable = without_improbable(probable, first, missing.group, world, options, &added);
+    probable = without_improbable(probable, first, missing, world, options, &added);
   }
   report->counts.push_back({"candidates", double(missing.candidates)});
   report->counts.push_back({"strokes_missing", double(added)});
@@ -281,11 +291,15 @@ void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
   finished->edgel_sigma_px = o.matches.sigma_px;
 }
 
-std::vector<int> leave_out_unsure(double least, FinishedSketch* finished) {
+std::vector<int> leave_out_doubtful(double least, const std::vector<bool>& round,
+                                    FinishedSketch* finished) {
   std::vector<bool> stays;
   std::vector<Numbers> features;
+  int unsure = 0;
   for (int s = 0; s < finished->sketch.size(); ++s) {
-    stays.push_back(!(finished->sketch.evidence[s].confidence < least));
+    const bool sure = !(finished->sketch.evidence[s].confidence < least);
+    stays.push_back(sure && !round[s]);
+    unsure += !sure;
     if (stays.back()) features.push_back(std::move(finished->features[s]));
   }
   const std::vector<int> now = numbers_after(stays);
@@ -294,10 +308,13 @@ std::vector<int> leave_out_unsure(double least, FinishedSketch* finished) {
   finished->features = std::move(features);
   const int before = finished->sketch.size();
   finished->sketch = keep_strokes(finished->sketch, stays);
-  finished->unsure = before - finished->sketch.size();
+  finished->unsure = unsure;
+  finished->rounded = before - unsure - finished->sketch.size();
   if (before > 0 && finished->sketch.size() == 0)
-    throw TooLittleError("expected strokes as probable as --min-confidence, found " +
-                         std::to_string(before) + " less probable ones");
+    throw TooLittleError(unsure > 0 ? "expected strokes as probable as --min-confidence, found " +
+                                          std::to_string(unsure) + " less probable ones"
+                                    : "expected edges, found " + std::to_string(before) +
+                                          " rounded ones alone");
   return now;
 }
 
@@ -331,6 +348,7 @@ void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunRe
   }
   report->counts.push_back({"loose_ends", double(count_loose_ends(sketch, world.footprint))});
   report->counts.push_back({"unsure", double(finished.unsure)});
+  report->counts.push_back({"rounded", double(finished.rounded)});
   report->counts.push_back({"edgel_sigma_px", finished.edgel_sigma_px});
   report->counts.push_back({"footprint", world.footprint});
 }

@@ -106,6 +106,7 @@ struct FinishedSketch {
   std::vector<Regularity> kept;   ///< relations that its strokes keep to
   std::vector<Numbers> features;  ///< per stroke: what its confidence was made of
   int unsure = 0;                 ///< strokes that were left out as less probable than asked for
+  int rounded = 0;                ///< and others that were left out as rounded edges
   double edgel_sigma_px = 0;      ///< of the edgels about the strokes
   SnapOutcome snap;               ///< lengths that were made standard ones
 };
@@ -126,9 +127,10 @@ FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
 void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
                    const std::vector<double>& implied, FinishedSketch* finished);
 
-/// Leaves out strokes of a confidence under `least` and throws TooLittleError if none is left.
-/// Returns what each stroke is called now, -1 for those left out.
-std::vector<int> leave_out_unsure(double least, FinishedSketch* finished);
+/// Leaves out strokes that are `round` and those of a confidence under `least`. Throws
+/// TooLittleError if none is left. Returns what each stroke is called now, -1 for those left out.
+std::vector<int> leave_out_doubtful(double least, const std::vector<bool>& round,
+                                    FinishedSketch* finished);
 
 /// Fills the report's strokes, regularities (by curve, see curve_chain.h) and counts.
 void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report);

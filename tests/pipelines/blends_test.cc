@@ -15,16 +15,8 @@ using namespace test;  // NOLINT
 
 // A step whose convex edges have rounds of 0.036 and 0.024 of its length, along x.
 Reconstruction step_with_rounds(bool blends) {
-  SynthesizeOptions made;
-  made.part = "blend-step";
-  made.seed = 3;
-  made.parameters = {{"round", 0.06}};
-  made.rig.views = 24;
-  made.rig.resolution = 400;
-  made.rig.object_size = 0.5;
-  made.outputs = "none";
   const TempFolder folder;
-  write_scene(synthesize(made), folder.path());
+  write_rounded_part("blend-step", 3, 0.06, folder.path());
   ReconstructOptions options;
   options.blends = blends;
   return reconstruct(open_scene(folder.path()), options, nullptr);

@@ -28,6 +28,20 @@ inline void write_part(const std::string& part, int views, int resolution, doubl
   write_scene(synthesize(options), folder);
 }
 
+/// One with rounded edges, their largest radius `round` of its longest side, which is 200 px.
+inline void write_rounded_part(const std::string& part, int seed, double round,
+                               const std::string& folder) {
+  SynthesizeOptions options;
+  options.part = part;
+  options.seed = seed;
+  options.parameters = {{"round", round}};
+  options.rig.views = 24;
+  options.rig.resolution = 400;
+  options.rig.object_size = 0.5;
+  options.outputs = "none";
+  write_scene(synthesize(options), folder);
+}
+
 /// As without any option.
 inline Reconstruction reconstruct_as_ever(const Scene& scene) {
   const ReconstructOptions options;

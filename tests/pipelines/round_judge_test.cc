@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "pipelines/survey/rounded.h"
 #include "pipelines/survey/select.h"
 #include "tests/support/strokes.h"
 
@@ -287,6 +288,24 @@ TEST(Select, ARoundIsLeftOutAndTheSameEdgeSharpIsKept) {
   const Selection chosen = select_strokes(s.sketch, s.world, {});
   EXPECT_EQ(chosen.sketch.size(), 11);
   EXPECT_EQ(chosen.verdicts[s.rounded], Verdict::kRound);
+}
+
+// The sketch, with a third of the rounded edge alone.
+Sketch with_a_piece(const Scene& s) {
+  Sketch piece = s.sketch;
+  const Stroke& stroke = piece.strokes[s.rounded];
+  piece.nodes.col(stroke.end) =
+      (2 * piece.nodes.col(stroke.begin) + piece.nodes.col(stroke.end)) / 3;
+  return piece;
+}
+
+TEST(RoundedStrokes, WhatGrewFromAPieceIsJudgedWithAllItsLength) {
+  const Scene s(6, 1.3f), sharp(0);
+  std::vector<bool> expected(s.sketch.size());
+  EXPECT_EQ(rounded_strokes(sharp.sketch, with_a_piece(sharp), sharp.world, {}), expected);
+  EXPECT_EQ(rounded_strokes(s.sketch, s.sketch, s.world, {}), expected) << "it was chosen as it is";
+  expected[s.rounded] = true;
+  EXPECT_EQ(rounded_strokes(s.sketch, with_a_piece(s), s.world, {}), expected);
 }
 
 }  // namespace
