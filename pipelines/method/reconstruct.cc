@@ -47,6 +47,7 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // moved onto the edgels, come first, and the rest is for edgels that are left. Then the edges that
 // the strokes lead to expect, where the pictures show them. At last, the solid that the strokes
 // bound, if they tell one that has all edges the pictures show, and its edges that none shows.
+// Without one, rounded edges that were not chosen, but others led to, go.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
