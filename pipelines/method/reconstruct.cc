@@ -47,7 +47,7 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // moved onto the edgels, come first, and the rest is for edgels that are left. Then the edges that
 // the strokes lead to expect, where the pictures show them. At last, the solid that the strokes
 // bound, if they tell one that has all edges the pictures show, and its edges that none shows.
-// Without one, rounded edges that were not chosen, but others led to, go.
+// Rounded edges that were not chosen, but that others led to, go.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
@@ -85,8 +85,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   SolidSearch solid = close_solid(finished.sketch, world, *detector, options, &report, progress);
   finished = complete_sketch(std::move(finished), &solid, world, options, &report, progress);
   const std::vector<bool> round =
-      solid.solid ? std::vector<bool>(finished.sketch.size())
-                  : rounded_strokes(finished.sketch, most.sketch, world, select_options(options));
+      rounded_strokes(finished.sketch, most.sketch, world, select_options(options));
   rename_doubtful(leave_out_doubtful(options.min_confidence, round, &finished), &solid);
   const Sketch proposed = propose_hidden(finished.sketch, world, &report);
   report_sketch(finished, world, &report);
