@@ -76,6 +76,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   }
   sketch = look_again(sketch, world, targets, last, &report, progress);
   sketch = drop_print(sketch, world, *detector, &report, progress);
+  const Sketch chosen = sketch;
   sketch = close_sketch(sketch, world, last, &report);
   const WithMissing most = add_missing_edges(sketch, world, last, &report, progress);
   FinishedSketch finished = finish_sketch(most, world, tags, last, &report, progress);
@@ -85,7 +86,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   SolidSearch solid = close_solid(finished.sketch, world, *detector, options, &report, progress);
   finished = complete_sketch(std::move(finished), &solid, world, options, &report, progress);
   const std::vector<bool> round =
-      rounded_strokes(finished.sketch, most.sketch, world, select_options(options));
+      rounded_strokes(finished.sketch, {chosen, most.sketch}, world, select_options(options));
   rename_doubtful(leave_out_doubtful(options.min_confidence, round, &finished), &solid);
   const Sketch proposed = propose_hidden(finished.sketch, world, &report);
   report_sketch(finished, world, &report);

@@ -11,42 +11,44 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kLonger = 1.3;   // than what was chosen, of strokes that are judged anew
-constexpr double kAlongPx = 2;    // of what was chosen from the stroke that it went into
+constexpr double kLonger = 1.3;   // than what they came from, of strokes that have grown
+constexpr double kAlongPx = 2;    // of that from the stroke that it went into
 constexpr double kSpacingPx = 5;  // of samples
+constexpr double kSurely = 2;     // [nat] against what was chosen
 
-// Length of the longest stroke of `chosen` that lies along a stroke.
-double longest_along(const Sketch& sketch, int stroke, const Sketch& chosen,
-                     const SampleLayout& layout, const Samples& samples, double footprint) {
-  double longest = 0;
-  for (int c = 0; c < chosen.size(); ++c) {
-    const double length = stroke_length(chosen, c);
-    if (length <= longest) continue;
-    bool along = true;
-    for (int i = layout.first[c]; along && i < layout.first[c + 1]; ++i)
-      along = distance_to_stroke(sketch, stroke, samples.position.col(i)).distance <
-              kAlongPx * footprint;
-    if (along) longest = length;
-  }
-  return longest;
+// Which strokes are no longer than one of `before` along them.
+std::vector<bool> as_before(const Sketch& sketch, const Sketch& before, double footprint) {
+  const SampleLayout layout = plan_samples(before, kSpacingPx * footprint);
+  const Samples samples = evaluate_samples(before, layout);
+  std::vector<bool> out(sketch.size(), false);
+  for (int s = 0; s < sketch.size(); ++s)
+    for (int c = 0; c < before.size() && !out[s]; ++c) {
+      if (kLonger * stroke_length(before, c) < stroke_length(sketch, s)) continue;
+      bool along = true;
+      for (int i = layout.first[c]; along && i < layout.first[c + 1]; ++i)
+        along =
+            distance_to_stroke(sketch, s, samples.position.col(i)).distance < kAlongPx * footprint;
+      out[s] = along;
+    }
+  return out;
 }
 
 }  // namespace
 
-std::vector<bool> rounded_strokes(const Sketch& sketch, const Sketch& chosen,
+std::vector<bool> rounded_strokes(const Sketch& sketch, const StrokeOrigins& origins,
                                   const EdgeWorld& world, const SelectOptions& options) {
-  const SampleLayout layout = plan_samples(chosen, kSpacingPx * world.footprint);
-  const Samples samples = evaluate_samples(chosen, layout);
+  const std::vector<bool> chosen = as_before(sketch, origins.chosen, world.footprint);
+  const std::vector<bool> judged = as_before(sketch, origins.judged, world.footprint);
   const Observation wide = observe_rounds(sketch, world, 0);
   const RoundJudge judge(world, wide, options.round);
   std::vector<double> nats;
   for (int s = 0; s < sketch.size(); ++s) nats.push_back(judge.nats(s, nullptr));
   const double odds = options.round_odds > 0 ? options.round_odds : odds_of_round(nats);
   std::vector<bool> round;
-  for (int s = 0; s < sketch.size(); ++s)
-    round.push_back(nats[s] + std::log(odds) > 0 &&
-                    stroke_length(sketch, s) > kLonger * longest_along(sketch, s, chosen, layout,
-                                                                       samples, world.footprint));
+  for (int s = 0; s < sketch.size(); ++s) {
+    const double least = chosen[s] ? kSurely : judged[s] ? INFINITY : 0;
+    round.push_back(nats[s] + std::log(odds) > least);
+  }
   return round;
 }
 

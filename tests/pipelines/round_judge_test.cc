@@ -301,11 +301,26 @@ Sketch with_a_piece(const Scene& s) {
 
 TEST(RoundedStrokes, WhatGrewFromAPieceIsJudgedWithAllItsLength) {
   const Scene s(6, 1.3f), sharp(0);
+  const Sketch piece = with_a_piece(s), sharp_piece = with_a_piece(sharp);
   std::vector<bool> expected(s.sketch.size());
-  EXPECT_EQ(rounded_strokes(sharp.sketch, with_a_piece(sharp), sharp.world, {}), expected);
-  EXPECT_EQ(rounded_strokes(s.sketch, s.sketch, s.world, {}), expected) << "it was chosen as it is";
+  EXPECT_EQ(rounded_strokes(sharp.sketch, {sharp_piece, sharp_piece}, sharp.world, {}), expected);
+  EXPECT_EQ(rounded_strokes(s.sketch, {piece, s.sketch}, s.world, {}), expected)
+      << "what was judged with others that bear it out stays";
   expected[s.rounded] = true;
-  EXPECT_EQ(rounded_strokes(s.sketch, with_a_piece(s), s.world, {}), expected);
+  EXPECT_EQ(rounded_strokes(s.sketch, {piece, piece}, s.world, {}), expected);
+}
+
+TEST(RoundedStrokes, WhatWasChosenGoesIfItSurelyIsOneAsItIsNow) {
+  const Scene s(6, 1.3f), sharp(0);
+  const std::vector<bool> round =
+      rounded_strokes(s.sketch, {s.sketch, s.sketch}, s.world, SelectOptions());
+  EXPECT_EQ(std::count(round.begin(), round.end(), true), 1);
+  EXPECT_TRUE(round[s.rounded]);
+  // Odds by which it is not sure.
+  SelectOptions options;
+  options.round_odds = std::exp(1 - s.nats());
+  EXPECT_FALSE(rounded_strokes(s.sketch, {s.sketch, s.sketch}, s.world, options)[s.rounded]);
+  EXPECT_TRUE(rounded_strokes(s.sketch, {{}, {}}, s.world, options)[s.rounded]);
 }
 
 }  // namespace
