@@ -14,7 +14,6 @@
 #include "pipelines/method/family_start.h"
 #include "pipelines/method/scene_tags.h"
 #include "pipelines/stages/stages.h"
-#include "pipelines/survey/rounded.h"
 
 namespace sketchsplat {
 
@@ -47,7 +46,7 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // moved onto the edgels, come first, and the rest is for edgels that are left. Then the edges that
 // the strokes lead to expect, where the pictures show them. At last, the solid that the strokes
 // bound, if they tell one that has all edges the pictures show, and its edges that none shows.
-// Rounded edges that were not chosen, but that others led to, go.
+// Last, rounded edges go that came in as pieces or because others led to them.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);
@@ -85,9 +84,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   tell_stop(options, &report, progress);
   SolidSearch solid = close_solid(finished.sketch, world, *detector, options, &report, progress);
   finished = complete_sketch(std::move(finished), &solid, world, options, &report, progress);
-  const std::vector<bool> round =
-      rounded_strokes(finished.sketch, {chosen, most.sketch}, world, select_options(options));
-  rename_doubtful(leave_out_doubtful(options.min_confidence, round, &finished), &solid);
+  rename_doubtful(leave_out_doubtful({chosen, most.sketch}, world, options, &finished), &solid);
   const Sketch proposed = propose_hidden(finished.sketch, world, &report);
   report_sketch(finished, world, &report);
   const Blends blends = options.blends ? find_blends(finished.sketch, world, options) : Blends();

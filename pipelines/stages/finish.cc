@@ -291,13 +291,15 @@ void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
   finished->edgel_sigma_px = o.matches.sigma_px;
 }
 
-std::vector<int> leave_out_doubtful(double least, const std::vector<bool>& round,
-                                    FinishedSketch* finished) {
+std::vector<int> leave_out_doubtful(const StrokeOrigins& origins, const EdgeWorld& world,
+                                    const ReconstructOptions& options, FinishedSketch* finished) {
+  const std::vector<bool> round =
+      rounded_strokes(finished->sketch, origins, world, select_options(options));
   std::vector<bool> stays;
   std::vector<Numbers> features;
   int unsure = 0;
   for (int s = 0; s < finished->sketch.size(); ++s) {
-    const bool sure = !(finished->sketch.evidence[s].confidence < least);
+    const bool sure = !(finished->sketch.evidence[s].confidence < options.min_confidence);
     stays.push_back(sure && !round[s]);
     unsure += !sure;
     if (stays.back()) features.push_back(std::move(finished->features[s]));

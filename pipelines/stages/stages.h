@@ -11,6 +11,7 @@
 #include "pipelines/adjust/snap.h"
 #include "pipelines/base/run_report.h"
 #include "pipelines/stages/options.h"
+#include "pipelines/survey/rounded.h"
 
 namespace sketchsplat {
 
@@ -127,10 +128,11 @@ FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
 void judge_strokes(const EdgeWorld& world, const ReconstructOptions& options,
                    const std::vector<double>& implied, FinishedSketch* finished);
 
-/// Leaves out strokes that are `round` and those of a confidence under `least`. Throws
-/// TooLittleError if none is left. Returns what each stroke is called now, -1 for those left out.
-std::vector<int> leave_out_doubtful(double least, const std::vector<bool>& round,
-                                    FinishedSketch* finished);
+/// Leaves out strokes that are rounded edges after all (rounded.h) and those of a confidence under
+/// that of the options. Throws TooLittleError if none is left. Returns what each stroke is called
+/// now, -1 for those left out.
+std::vector<int> leave_out_doubtful(const StrokeOrigins& origins, const EdgeWorld& world,
+                                    const ReconstructOptions& options, FinishedSketch* finished);
 
 /// Fills the report's strokes, regularities (by curve, see curve_chain.h) and counts.
 void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report);

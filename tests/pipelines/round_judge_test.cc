@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <array>
 
-#include "pipelines/survey/rounded.h"
 #include "pipelines/survey/select.h"
-#include "tests/support/strokes.h"
+#include "tests/pipelines/rounded_cube.h"
 
 namespace sketchsplat {
 namespace {
@@ -16,74 +15,8 @@ namespace {
 using namespace test;  // NOLINT
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-const Vector3d kMiddle(0.5, 0.5, 0.5);
-constexpr double kPixel = 3.0 / 500;
-constexpr float kSharp = 1.1f;
-
-// Where on a round corner of a square, with sides at 0.8, a camera in its plane sees most: where a
-// line of sight touches it, or else where its shading happens to be strongest for that camera.
-Vector2d strongest(const Vector2d& camera, double radius, int view, bool contour) {
-  const Vector2d centre(0.8 - radius, 0.8 - radius), to = camera - centre;
-  const double away = std::atan2(to.y(), to.x()), half = std::acos(radius / to.norm());
-  double angle = M_PI / 4 * (1 + 0.6 * std::sin(view));
-  for (const double touching : {away - half, away + half})
-    if (contour && touching > 0 && touching < M_PI / 2) angle = touching;
-  return centre + radius * Vector2d(std::cos(angle), std::sin(angle));
-}
-
-// The brighter side of edgels is that of the cube.
-void turn_to_middle(const View& view, EdgelMap* map) {
-  double depth;
-  const Vector2d middle = view.project(kMiddle, &depth);
-  for (Edgel& e : map->edgels)
-    if ((middle.x() - e.x) * e.nx + (middle.y() - e.y) * e.ny < 0) e.nx *= -1, e.ny *= -1;
-}
-
-// A cube seen by many, one edge of which is rounded: where it is no outline it shows `inner` times
-// as wide as edges. All pictures are `blur` times as wide as usual. The stroke lies where it is
-// nearest to what all views show.
-struct Scene {
-  Sketch sketch;
-  int rounded = -1;
-  EdgeWorld world;
-  explicit Scene(double radius_px, float inner = 1, float blur = 1) {
-    const double radius = radius_px * kPixel;
-    const Vector3d a(0.2, 0.8, 0.8), b(0.8, 0.8, 0.8);
-    for (const Polyline& e : cube_edges({0.2, 0.2, 0.2}, 0.6)) {
-      const int s = add_line(&sketch, e[0], e[1]);
-      if ((e[0] - a).norm() < 1e-9 && (e[1] - b).norm() < 1e-9) rounded = s;
-    }
-    const double in = radius * (1 - 1.1 * std::sqrt(0.5));
-    for (int n : {sketch.strokes[rounded].begin, sketch.strokes[rounded].end})
-      sketch.nodes.col(n) -= Vector3d(0, in, in);
-    const std::vector<View> views = ring_of_views(40, kMiddle, 3);
-    std::vector<EdgelMap> maps;
-    for (const View& view : views) {
-      const Vector3d c = view.center_in_world();
-      const bool contour = (c.y() > 0.8) != (c.z() > 0.8);
-      const Vector2d at = strongest({c.y(), c.z()}, radius, int(maps.size()), contour);
-      std::vector<Polyline> seen = polylines_of(sketch);
-      seen[rounded] = segment({0.2, at.x(), at.y()}, {0.8, at.x(), at.y()});
-      EdgelMap map = ideal_edgels(view, seen);
-      turn_to_middle(view, &map);
-      for (Edgel& e : map.edgels) e.width = kSharp * blur;
-      const size_t first = map.chain[rounded], end = map.chain[rounded + 1];
-      for (size_t i = first; i < end; ++i) {
-        map.edgels[i].outline = contour;
-        if (!contour) map.edgels[i].width *= inner;
-      }
-      maps.push_back(map);
-    }
-    world = make_edge_world(views, maps);
-  }
-  double nats(const RoundModel& model = {}) const {
-    const Observation wide = observe_rounds(sketch, world, 0);
-    return RoundJudge(world, wide, model).nats(rounded, nullptr);
-  }
-};
-
 TEST(RoundJudge, ASightingIsTheMedianPlaceAndWidthOfItsEdgels) {
-  Scene s(0);
+  RoundedCube s(0);
   Sketch aside = s.sketch;
   const Vector3d shift(0, 0.4 * kPixel, -0.3 * kPixel);
   for (int n : {aside.strokes[s.rounded].begin, aside.strokes[s.rounded].end})
@@ -146,7 +79,7 @@ struct CutEdge {
 };
 
 TEST(RoundJudge, OutlinesAreFoundBesideAStrokeAndStandOffAsTheRowSays) {
-  Scene s(0);
+  RoundedCube s(0);
   for (EdgelMap& map : s.world.maps)
     for (Edgel& e : map.edgels) e.outline = true;
   Sketch aside = s.sketch;
@@ -176,7 +109,8 @@ TEST(RoundJudge, OutlinesAreFoundBesideAStrokeAndStandOffAsTheRowSays) {
 
 TEST(RoundJudge, OutlinesFarBesideAStrokeTellARoundFromEdgesSideBySide) {
   for (const double radius : {5, 7, 10}) {
-    Scene s(radius);  // the stroke lies where the round begins, as the views from one side have it
+    RoundedCube s(
+        radius);  // the stroke lies where the round begins, as the views from one side have it
     for (int n : {s.sketch.strokes[s.rounded].begin, s.sketch.strokes[s.rounded].end})
       s.sketch.nodes.col(n).tail<2>() = Vector2d(0.8 - radius * kPixel, 0.8);
     EXPECT_GT(s.nats(), 5) << radius;
@@ -198,12 +132,12 @@ TEST(RoundJudge, ANarrowCutIsNoRoundThoughItsStrokeRunsBetweenTheTwoEdges) {
       EXPECT_LT(RoundJudge(s.world, wide, outlines_alone).nats(0, nullptr), 2)
           << width << " " << across;
     }
-  const Scene round(8);
+  const RoundedCube round(8);
   EXPECT_GT(round.nats(outlines_alone), 5);
 }
 
 TEST(RoundJudge, EdgelsOfOthersTellNothing) {
-  const Scene s(6);
+  const RoundedCube s(6);
   EdgelFlags all = no_edgels(s.world);
   for (auto& view : all) std::fill(view.begin(), view.end(), 1);
   const Observation wide = observe_rounds(s.sketch, s.world, 0);
@@ -211,18 +145,18 @@ TEST(RoundJudge, EdgelsOfOthersTellNothing) {
 }
 
 TEST(RoundJudge, ARoundOfSixPixelsIsNoEdgeAndTheSameEdgeSharpIsOne) {
-  EXPECT_GT(Scene(6).nats(), 5) << "its outline moves";
-  EXPECT_GT(Scene(6, 1.4f).nats(), Scene(6).nats() + 5) << "and its shading is wide";
-  EXPECT_LT(Scene(0).nats(), -10);
+  EXPECT_GT(RoundedCube(6).nats(), 5) << "its outline moves";
+  EXPECT_GT(RoundedCube(6, 1.4f).nats(), RoundedCube(6).nats() + 5) << "and its shading is wide";
+  EXPECT_LT(RoundedCube(0).nats(), -10);
 }
 
 TEST(RoundJudge, ASharpEdgeInBlurredPicturesIsNoRound) {
-  EXPECT_LT(Scene(0, 1, 2.5f).nats(), -10);
-  EXPECT_GT(Scene(6, 1, 2.5f).nats(), 5);
+  EXPECT_LT(RoundedCube(0, 1, 2.5f).nats(), -10);
+  EXPECT_GT(RoundedCube(6, 1, 2.5f).nats(), 5);
 }
 
 TEST(RoundJudge, TheBlurOfAViewIsItsOwn) {
-  Scene s(0);
+  RoundedCube s(0);
   for (size_t v = 0; v < s.world.maps.size(); v += 2)  // half of them are out of focus
     for (Edgel& e : s.world.maps[v].edgels) e.width *= 2;
   EXPECT_LT(s.nats(), -20);
@@ -235,7 +169,7 @@ TEST(RoundJudge, TheBlurOfAViewIsItsOwn) {
 TEST(RoundJudge, RoundsBecomeEdgesGraduallyAsTheirRadiusShrinks) {
   double last = INFINITY;
   for (const double radius : {4, 2, 1}) {
-    const double nats = Scene(radius).nats();
+    const double nats = RoundedCube(radius).nats();
     EXPECT_LT(nats, last) << radius;
     last = nats;
   }
@@ -243,7 +177,7 @@ TEST(RoundJudge, RoundsBecomeEdgesGraduallyAsTheirRadiusShrinks) {
 }
 
 TEST(RoundJudge, WhatCountsAsRoundIsAnOptionInPixelsAndInUnits) {
-  const Scene s(4);
+  const RoundedCube s(4);
   RoundModel model;
   model.least_radius_px = 1e6;
   EXPECT_EQ(s.nats(model), -INFINITY);
@@ -255,13 +189,13 @@ TEST(RoundJudge, WhatCountsAsRoundIsAnOptionInPixelsAndInUnits) {
 }
 
 TEST(RoundJudge, ANarrowEdgeIsLessOfARoundThanAWideOneAndViewsByWidthSayWhy) {
-  const Scene same(0), narrow(0, 0.85f), wide(0, 1.09f), wider(0, 1.2f);
+  const RoundedCube same(0), narrow(0, 0.85f), wide(0, 1.09f), wider(0, 1.2f);
   EXPECT_LT(same.nats(), narrow.nats());
   EXPECT_LT(narrow.nats(), wider.nats());
   EXPECT_LT(same.nats(), wide.nats());
   EXPECT_LT(wide.nats(), wider.nats());
   int kind = 0;
-  for (const Scene* s : {&narrow, &same, &wide, &wider}) {
+  for (const RoundedCube* s : {&narrow, &same, &wide, &wider}) {
     const Observation o = observe_rounds(s->sketch, s->world, 0);
     const std::array<int, 4> views =
         RoundJudge(s->world, o, {}).views_by_width(s->rounded, nullptr);
@@ -283,44 +217,13 @@ TEST(RoundJudge, WhereAllOthersAreSharpARoundIsUnlikelyBeforehand) {
 }
 
 TEST(Select, ARoundIsLeftOutAndTheSameEdgeSharpIsKept) {
-  EXPECT_EQ(select_strokes(Scene(0, 1, 2).sketch, Scene(0, 1, 2).world, {}).sketch.size(), 12);
-  const Scene s(6, 1.3f);
+  EXPECT_EQ(
+      select_strokes(RoundedCube(0, 1, 2).sketch, RoundedCube(0, 1, 2).world, {}).sketch.size(),
+      12);
+  const RoundedCube s(6, 1.3f);
   const Selection chosen = select_strokes(s.sketch, s.world, {});
   EXPECT_EQ(chosen.sketch.size(), 11);
   EXPECT_EQ(chosen.verdicts[s.rounded], Verdict::kRound);
-}
-
-// The sketch, with a third of the rounded edge alone.
-Sketch with_a_piece(const Scene& s) {
-  Sketch piece = s.sketch;
-  const Stroke& stroke = piece.strokes[s.rounded];
-  piece.nodes.col(stroke.end) =
-      (2 * piece.nodes.col(stroke.begin) + piece.nodes.col(stroke.end)) / 3;
-  return piece;
-}
-
-TEST(RoundedStrokes, WhatGrewFromAPieceIsJudgedWithAllItsLength) {
-  const Scene s(6, 1.3f), sharp(0);
-  const Sketch piece = with_a_piece(s), sharp_piece = with_a_piece(sharp);
-  std::vector<bool> expected(s.sketch.size());
-  EXPECT_EQ(rounded_strokes(sharp.sketch, {sharp_piece, sharp_piece}, sharp.world, {}), expected);
-  EXPECT_EQ(rounded_strokes(s.sketch, {piece, s.sketch}, s.world, {}), expected)
-      << "what was judged with others that bear it out stays";
-  expected[s.rounded] = true;
-  EXPECT_EQ(rounded_strokes(s.sketch, {piece, piece}, s.world, {}), expected);
-}
-
-TEST(RoundedStrokes, WhatWasChosenGoesIfItSurelyIsOneAsItIsNow) {
-  const Scene s(6, 1.3f), sharp(0);
-  const std::vector<bool> round =
-      rounded_strokes(s.sketch, {s.sketch, s.sketch}, s.world, SelectOptions());
-  EXPECT_EQ(std::count(round.begin(), round.end(), true), 1);
-  EXPECT_TRUE(round[s.rounded]);
-  // Odds by which it is not sure.
-  SelectOptions options;
-  options.round_odds = std::exp(1 - s.nats());
-  EXPECT_FALSE(rounded_strokes(s.sketch, {s.sketch, s.sketch}, s.world, options)[s.rounded]);
-  EXPECT_TRUE(rounded_strokes(s.sketch, {{}, {}}, s.world, options)[s.rounded]);
 }
 
 }  // namespace
