@@ -44,15 +44,18 @@ CameraEvidence CameraSystem::evidence() {
       information.bottomRightCorner(shared, shared) -
       prior_cross.transpose() * information.topLeftCorner(poses, poses).ldlt().solve(prior_cross);
   Halves of_poses, of_shared;
+  const VectorXd of_prior = prior_.gradient + information * now_.cameras;
   for (const int half : {0, 1}) {
-    assemble(rows, 0, half);
-    gradient_ -= prior_.gradient + information * now_.cameras;
+    assemble(rows, 0, {Part::kViews, half});
+    gradient_ -= of_prior;
     const auto cross = hessian_.topRightCorner(poses, shared);
     const MatrixXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross);
     of_shared.hessian[half] =
         hessian_.bottomRightCorner(shared, shared) - cross.transpose() * follow;
     of_shared.hessian[half] -= prior_shared;
     of_shared.gradient[half] = gradient_.tail(shared) - follow.transpose() * gradient_.head(poses);
+    assemble(rows, 0, {Part::kStrokes, half});
+    gradient_ -= of_prior;
     of_poses.hessian[half] = hessian_.topLeftCorner(poses, poses);
     of_poses.hessian[half] -= information.topLeftCorner(poses, poses);
     of_poses.gradient[half] = gradient_.head(poses);

@@ -60,7 +60,8 @@ struct CameraEvidence {
 /// Two halves of the strokes each say how the cameras err, and each is asked whether that fits its
 /// own offsets r, too: by moves d of them which the other half tells, d.r is normal with variance
 /// d.d where cameras are right, in standard deviations of offsets; else its mean is d.d. One linear
-/// step from world.views. For what views share, each half has poses of its own.
+/// step from world.views. Of what views share every other view of a camera makes a half, with
+/// strokes and poses of its own: a part may have few strokes.
 CameraEvidence camera_evidence(const Sketch& sketch, const Observation& observation,
                                const EdgeWorld& world, const StatedCameras& stated,
                                const CameraPrior& prior);

@@ -43,6 +43,8 @@ CameraSystem::CameraSystem(const Sketch& sketch, const Observation& o, const Edg
   points_.resize(layout_.size()), tangents_.resize(layout_.size());
   now_.cameras = cameras_.values_of(world.views);
   place(now_);
+  std::vector<int> ranks(cameras_.cameras());
+  for (int v = 0; v < cameras_.views(); ++v) rank_.push_back(ranks[cameras_.camera_of(v)]++);
   list_rows(o, world);
   weigh();
   before_ = offset_px();
@@ -169,8 +171,13 @@ void CameraSystem::linearise(std::vector<Linear>* out) const {
   });
 }
 
+bool CameraSystem::counts(const Row& row, const Part& part) const {
+  return part.by == Part::kAll ||
+         (part.by == Part::kStrokes ? row.stroke : rank_[row.view]) % 2 == part.half;
+}
+
 // Normal equations of the strokes, and what is left of those of the cameras without them.
-void CameraSystem::assemble(const std::vector<Linear>& rows, double damping, int half) {
+void CameraSystem::assemble(const std::vector<Linear>& rows, double damping, const Part& part) {
   const int n = int(kinds_.size()), size = cameras_.size();
   normals_.resize(n);
   parallel_for(n, 1, [&](int s) {
@@ -179,8 +186,9 @@ void CameraSystem::assemble(const std::vector<Linear>& rows, double damping, int
     normal.gradient.setZero();
     normal.cross = MatrixXd::Zero(kStrokeUnknowns, size);
     normal.root.setZero();
-    if (!options_.strokes_move || (half >= 0 && s % 2 != half)) return;
+    if (!options_.strokes_move) return;
     for (int i = of_stroke_[s]; i < of_stroke_[s + 1]; ++i) {
+      if (!counts(rows_[i], part)) continue;
       const Linear& r = rows[i];
       const int camera = cameras_.camera_of(rows_[i].view), shared = cameras_.num_shared(camera);
       const StrokeVector j = rows_[i].weight * r.stroke;
@@ -202,7 +210,7 @@ void CameraSystem::assemble(const std::vector<Linear>& rows, double damping, int
     Matrix<double, kPose, kShared> mixed = Matrix<double, kPose, kShared>::Zero();
     Matrix<double, kShared, kShared> both = Matrix<double, kShared, kShared>::Zero();
     for (const int i : of_view_[v]) {
-      if (half >= 0 && rows_[i].stroke % 2 != half) continue;
+      if (!counts(rows_[i], part)) continue;
       const Linear& r = rows[i];
       const double w = rows_[i].weight;
       poses.noalias() += w * r.pose * r.pose.transpose();

@@ -54,8 +54,14 @@ class CameraSystem {
   double distance(const Row& row, Linear* linear, const PointJacobian* moves = nullptr) const;
   double cost() const;
   void linearise(std::vector<Linear>* rows) const;
-  // Of strokes s with s % 2 == half alone; -1: of all.
-  void assemble(const std::vector<Linear>& rows, double damping, int half = -1);
+  // Which rows count: all, those of every other stroke, or those of every other view of a camera.
+  struct Part {
+    enum By { kAll, kStrokes, kViews } by;
+    int half;
+  };
+  bool counts(const Row& row, const Part& part) const;
+  void assemble(const std::vector<Linear>& rows, double damping,
+                const Part& part = {Part::kAll, 0});
   State step() const;
   double offset_px() const;
   double scale_sigma() const;
@@ -73,6 +79,7 @@ class CameraSystem {
   std::vector<Row> rows_;
   std::vector<int> of_stroke_;  // rows of stroke s: of_stroke_[s] .. of_stroke_[s + 1] - 1
   std::vector<std::vector<int>> of_view_;
+  std::vector<int> rank_;  // of a view, among those of its camera
   int offsets_ = 0;
   double scatter_ = 0, offset_sigma_ = 0, before_ = 0;
   std::vector<StrokeNormal> normals_;

@@ -8,6 +8,7 @@
 
 #include "datasets/types/errors.h"
 #include "edges/views/recast.h"
+#include "pipelines/cameras/camera_fit.h"
 #include "pipelines/cameras/misfit.h"
 #include "pipelines/cameras/point_prior.h"
 #include "pipelines/cameras/posed.h"
@@ -22,6 +23,7 @@ constexpr double kTimesChance = 2;
 constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be mended
 constexpr double kAstrayPx = 0.4;    // strokes by cameras that are right lie stiller in views
 constexpr double kStillPx = 0.25;    // edgels lie on strokes, by such cameras
+constexpr double kReachPx = 2, kExactPx = 1e-3;
 // Times these edgels, for cameras to move of which strokes say that they err, and for others; none
 // fewer among things, whose few strokes fit any cameras.
 constexpr double kNoWorse = 0.9, kMuchBetter = 1.5;
@@ -104,9 +106,15 @@ Misfit check_cameras(const Posed& posed, const StatedCameras& stated, double sha
   return off;
 }
 
-// Share of the edgels that lie on strokes as they do by cameras that are right.
+// Share of the edgels that lie on strokes as they do by cameras that are right, once the strokes
+// have settled: where they were lifted says little of cameras.
 double still_share(const Posed& posed) {
-  return explained(posed.sketch, posed.world, kStillPx).share;
+  const Observation o = look(posed, kReachPx);
+  if (o.matches.matches.empty()) return 0;
+  CameraPrior still;
+  still.pose_px = kExactPx, still.shared = false;
+  const CameraFit fit = fit_cameras(posed.sketch, o, posed.world, {posed.world.views}, still, {});
+  return explained(fit.sketch, posed.world, kStillPx).share;
 }
 
 // Cameras that fit, where these ones do not and others explain more; true if they moved.

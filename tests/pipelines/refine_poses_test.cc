@@ -252,5 +252,22 @@ TEST(RefinePoses, ARenderedPartWithPoseNoiseLosesLittle) {
             f_at(score(reconstruct(scene, off, nullptr).sketch, folder.path()).fine, 0.005));
 }
 
+// All that tells of its cameras are two strokes.
+TEST(RefinePoses, ARenderedPartOfTwoEdgesTellsItsFocalLength) {
+  for (const int seed : {0, 1}) {
+    const TempFolder folder;
+    SynthesizeOptions part;
+    part.part = "cut-cylinder";
+    part.seed = seed;
+    part.rig.views = 24, part.rig.resolution = 400;
+    part.render.noise = 2;
+    part.outputs = "none";
+    part.degrade.focal_error_percent = 2;
+    write_scene(synthesize(part), folder.path());
+    const Sketch found = reconstruct_as_ever(open_scene(folder.path())).sketch;
+    EXPECT_GT(f_at(score(found, folder.path()).fine, 0.005), 98.5) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace sketchsplat
