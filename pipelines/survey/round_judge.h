@@ -91,8 +91,9 @@ class RoundJudge {
   double places_of_rim(const std::vector<RoundSighting>& seen) const;
   double nats_of_rim(const std::vector<RoundSighting>& seen, const RimFit& rim,
                      const Places& places) const;
-  std::vector<RimFit> rims_through(const std::vector<RoundSighting>& seen) const;
+  std::vector<RimFit> rims_through(const std::vector<RoundSighting>& seen, double reach_px) const;
   double nats_of_outlines(int stroke) const;
+  double nats_of_outlines(const CurvePoints& curve, double reach_px) const;
   std::array<int, 4> by_width(const std::vector<RoundSighting>& seen) const;
   double widths_of_round(const std::vector<RoundSighting>& seen) const;
   const EdgeWorld& world_;

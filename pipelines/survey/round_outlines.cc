@@ -22,7 +22,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Sightings = std::vector<RoundSighting>;
 
-constexpr double kFarPx = 12;      // beside a stroke; no wider round is told
+// Beside a stroke; no wider round is told. Those of a small round lie near, and further off there
+// are more of other edges.
+constexpr double kReachesPx[] = {12, 18};
 constexpr double kSigmaPx = 0.12;  // standard deviation of a piece's outline in a view
 constexpr double kCoarsePx = 0.3;  // strokes that are off by more tell nothing
 constexpr double kOffRoundPx = 1;  // standard deviation of a stroke from its round
@@ -284,14 +286,15 @@ Outlines outlines_beside(const EdgeWorld& world, const CurvePoints& curve, doubl
 }
 
 // Rounds that triples of outlines touch, those that the most others touch, too.
-std::vector<RoundJudge::RimFit> RoundJudge::rims_through(const Sightings& seen) const {
+std::vector<RoundJudge::RimFit> RoundJudge::rims_through(const Sightings& seen,
+                                                         double reach_px) const {
   constexpr size_t kMostInTriples = 14, kKept = 3;
   constexpr double kLeastDeterminant = 0.01;
   constexpr int kFits = 4;
-  const Places wide{3 * kSigmaPx, kFarPx, kBesideRound};
+  const Places wide{3 * kSigmaPx, reach_px, kBesideRound};
   std::vector<std::pair<double, Vector3d>> found;
   const auto fits = [&](const Vector3d& x) {
-    return x.z() >= model_.least_radius_px && x.z() <= kFarPx;
+    return x.z() >= model_.least_radius_px && x.z() <= reach_px;
   };
   const Sightings some = thinned(seen, kMostInTriples);
   for (size_t i = 0; i < some.size(); ++i)
@@ -332,11 +335,16 @@ std::vector<RoundJudge::RimFit> RoundJudge::rims_through(const Sightings& seen) 
 double RoundJudge::nats_of_outlines(int stroke) const {
   if (sigma_ > kCoarsePx) return -INFINITY;
   const int first = wide_.layout.first[stroke], n = wide_.layout.first[stroke + 1] - first;
-  const Outlines outlines = outlines_beside(world_,
-                                            {wide_.samples.position.middleCols(first, n),
-                                             wide_.samples.tangent.middleCols(first, n),
-                                             {0, n}},
-                                            kFarPx);
+  const CurvePoints curve = {wide_.samples.position.middleCols(first, n),
+                             wide_.samples.tangent.middleCols(first, n),
+                             {0, n}};
+  double most = -INFINITY;
+  for (const double reach_px : kReachesPx) most = std::max(most, nats_of_outlines(curve, reach_px));
+  return most;
+}
+
+double RoundJudge::nats_of_outlines(const CurvePoints& curve, double reach_px) const {
+  const Outlines outlines = outlines_beside(world_, curve, reach_px);
   const Sightings& seen = outlines.seen;
   std::set<int> views;
   for (const RoundSighting& v : seen) views.insert(v.view);
@@ -345,17 +353,18 @@ double RoundJudge::nats_of_outlines(int stroke) const {
   });
   if (views.size() < kFewestViews || on_it < kFewestOnIt) return -INFINITY;
   double rim = -INFINITY;
-  for (const RimFit& fit : rims_through(seen)) {
+  for (const RimFit& fit : rims_through(seen, reach_px)) {
     const double off = (fit.x.head<2>().norm() - fit.x.z()) / kOffRoundPx;
-    rim = std::max(rim, nats_of_rim(seen, fit, {kSigmaPx, kFarPx, kBesideRound}) - 0.5 * off * off);
+    rim =
+        std::max(rim, nats_of_rim(seen, fit, {kSigmaPx, reach_px, kBesideRound}) - 0.5 * off * off);
   }
-  const double edge = std::max(places_of_edge(seen, {kSigmaPx, kFarPx, kBesideEdge}),
-                               places_of_edge(seen, {kSigmaPx, kFarPx, kBesideEdges}));
+  const double edge = std::max(places_of_edge(seen, {kSigmaPx, reach_px, kBesideEdge}),
+                               places_of_edge(seen, {kSigmaPx, reach_px, kBesideEdges}));
   double two = -INFINITY;
   if (rim > edge) {
-    two = places_of_two(seen, kSigmaPx, kFarPx);
+    two = places_of_two(seen, kSigmaPx, reach_px);
     for (const double share : {0.3, 0.5, 0.7})
-      two = std::max(two, places_of_chamfer(seen, split_edges(seen, share), kSigmaPx, kFarPx));
+      two = std::max(two, places_of_chamfer(seen, split_edges(seen, share), kSigmaPx, reach_px));
   }
   return model_.witnesses * (rim - std::max(edge, two)) / outlines.pieces;
 }

@@ -108,14 +108,14 @@ TEST(RoundJudge, OutlinesAreFoundBesideAStrokeAndStandOffAsTheRowSays) {
 }
 
 TEST(RoundJudge, OutlinesFarBesideAStrokeTellARoundFromEdgesSideBySide) {
-  for (const double radius : {5, 7, 10}) {
+  for (const double radius : {5, 7, 10, 15}) {
     RoundedCube s(
         radius);  // the stroke lies where the round begins, as the views from one side have it
     for (int n : {s.sketch.strokes[s.rounded].begin, s.sketch.strokes[s.rounded].end})
       s.sketch.nodes.col(n).tail<2>() = Vector2d(0.8 - radius * kPixel, 0.8);
     EXPECT_GT(s.nats(), 5) << radius;
   }
-  for (const double width : {3, 5, 8}) {
+  for (const double width : {3, 5, 8, 14}) {
     const CutEdge s(width);
     const Observation wide = observe_rounds(s.sketch, s.world, 0);
     EXPECT_LT(RoundJudge(s.world, wide, {}).nats(0, nullptr), 0) << width;
