@@ -23,12 +23,12 @@ using Eigen::Vector3d;
 using Sightings = std::vector<RoundSighting>;
 
 // Beside a stroke; no wider round is told. Those of a small round lie near, and further off there
-// are more of other edges.
-constexpr double kReachesPx[] = {12, 18};
+// are more of other edges, which pass for a round in few views.
+constexpr double kNearPx = 12, kFarPx = 18;
 constexpr double kSigmaPx = 0.12;  // standard deviation of a piece's outline in a view
 constexpr double kCoarsePx = 0.3;  // strokes that are off by more tell nothing
 constexpr double kOffRoundPx = 1;  // standard deviation of a stroke from its round
-constexpr size_t kFewestViews = 6;
+constexpr size_t kFewestViews = 6, kFewestFarViews = 12;
 constexpr double kRoot2Pi = 2.5066283;  // square root of 2 pi
 constexpr double kWeak = 1e-3;          // information on places that no view tells
 constexpr double kWidest = 100;         // chamfer, over the narrowest
@@ -338,9 +338,7 @@ double RoundJudge::nats_of_outlines(int stroke) const {
   const CurvePoints curve = {wide_.samples.position.middleCols(first, n),
                              wide_.samples.tangent.middleCols(first, n),
                              {0, n}};
-  double most = -INFINITY;
-  for (const double reach_px : kReachesPx) most = std::max(most, nats_of_outlines(curve, reach_px));
-  return most;
+  return std::max(nats_of_outlines(curve, kNearPx), nats_of_outlines(curve, kFarPx));
 }
 
 double RoundJudge::nats_of_outlines(const CurvePoints& curve, double reach_px) const {
@@ -351,7 +349,8 @@ double RoundJudge::nats_of_outlines(const CurvePoints& curve, double reach_px) c
   const auto on_it = std::count_if(seen.begin(), seen.end(), [](const RoundSighting& v) {
     return std::abs(v.place_px) < kOnItPx;
   });
-  if (views.size() < kFewestViews || on_it < kFewestOnIt) return -INFINITY;
+  const size_t fewest = reach_px > kNearPx ? kFewestFarViews : kFewestViews;
+  if (views.size() < fewest || on_it < kFewestOnIt) return -INFINITY;
   double rim = -INFINITY;
   for (const RimFit& fit : rims_through(seen, reach_px)) {
     const double off = (fit.x.head<2>().norm() - fit.x.z()) / kOffRoundPx;
