@@ -126,6 +126,20 @@ CameraQuadratic point_prior(const CameraUnknowns& cameras, const std::vector<Sce
   return sum;
 }
 
+double points_off_px(const std::vector<View>& views, const std::vector<ScenePoint>& points) {
+  std::vector<double> apart;
+  for (const ScenePoint& point : points)
+    for (const PointSight& sight : point.sights) {
+      double depth;
+      Vector2d pixel;
+      const View& view = views[sight.view];
+      if (!view.image_pixel(view.project(point.position, &depth), &pixel) || !(depth > 0)) continue;
+      const Vector2d off = (pixel - sight.pixel).cwiseAbs();
+      if (off.allFinite()) apart.insert(apart.end(), {off.x(), off.y()});
+    }
+  return apart.empty() ? 0 : normal_sigma(apart);
+}
+
 std::vector<ScenePoint> points_among(const std::vector<View>& views, const Scene& scene) {
   if (scene.points.empty()) return {};
   std::vector<int> index(scene.views.size(), -1);

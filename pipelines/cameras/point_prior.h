@@ -22,6 +22,10 @@ struct CameraQuadratic {
 /// those without a pixel tell nothing.
 CameraQuadratic point_prior(const CameraUnknowns& cameras, const std::vector<ScenePoint>& points);
 
+/// [px] Robust standard deviation, in one direction, of what the images of points are off their
+/// pixels by; 0 without any.
+double points_off_px(const std::vector<View>& views, const std::vector<ScenePoint>& points);
+
 /// The points of a scene as another list of its views, of the same names and files, shows them;
 /// none of those of which fewer than two of these views hold a pixel.
 std::vector<ScenePoint> points_among(const std::vector<View>& views, const Scene& scene);

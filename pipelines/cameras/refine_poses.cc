@@ -24,6 +24,7 @@ constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be
 constexpr double kAstrayPx = 0.4;    // strokes by cameras that are right lie stiller in views
 constexpr double kStillPx = 0.25;    // edgels lie on strokes, by such cameras
 constexpr double kReachPx = 2, kExactPx = 1e-3;
+constexpr double kPointsOffPx = 0.1;  // points of cameras that are right lie stiller in views
 // Times these edgels, for cameras to move of which strokes say that they err, and for others; none
 // fewer among things, whose few strokes fit any cameras.
 constexpr double kNoWorse = 0.9, kMuchBetter = 1.5;
@@ -150,8 +151,11 @@ PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const Reconstruct
   const double as_stated = shares.share;
   const bool astray =
       (as_stated < kLeastShare || off.offset_px > kAstrayPx) && !stands_among_things(posed.world);
+  // The cameras of structure from motion err; among things few strokes are left to confirm it.
+  const bool doubtful =
+      stands_among_things(posed.world) && points_off_px(stated.views, stated.points) > kPointsOffPx;
   bool moved = false;
-  if (able && (off.confirmed() || astray || options.refine_poses == "on")) {
+  if (able && (off.confirmed() || astray || doubtful || options.refine_poses == "on")) {
     moved = move_cameras(stated, off, options, report, progress, &posed);
     shares = explained(posed.sketch, posed.world);
   }

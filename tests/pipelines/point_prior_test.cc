@@ -66,6 +66,15 @@ double cost(const CameraUnknowns& cameras, const std::vector<ScenePoint>& points
   return sum;
 }
 
+TEST(PointPrior, PointsAreOffByWhatTheirPixelsAre) {
+  const std::vector<View> views = ring_of_views(6, kMiddle, 3);
+  EXPECT_LT(points_off_px(views, points_of(views, 40, 0)), 1e-9);
+  const double jittered = points_off_px(views, points_of(views, 40, kJitter));
+  EXPECT_GT(jittered, kJitter);
+  EXPECT_LT(jittered, 2 * kJitter) << "as if normal";
+  EXPECT_EQ(points_off_px(views, {}), 0);
+}
+
 TEST(PointPrior, GradientAndCurvatureAreThoseOfTheBestPoints) {
   std::vector<View> views = ring_of_views(6, kMiddle, 3);
   for (View& v : views) v.lens = Lens(LensModel::kOpencv, {-0.1, 0.02, 0.003, -0.002});
@@ -99,15 +108,14 @@ TEST(PointPrior, AWorldThatMovesAsAWholeCostsNothing) {
   const CameraQuadratic prior = point_prior(cameras, points_of(views, 40, 0));
   std::vector<View> moved = views;
   constexpr double kBy = 1e-4;
-  const Matrix3d turn =
-      Eigen::AngleAxisd(kBy, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Matrix3d turn = Eigen::AngleAxisd(kBy, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   for (View& v : moved) {
     v.cam_from_world.translation += v.cam_from_world.rotation * Vector3d(kBy, -2 * kBy, kBy);
     v.cam_from_world.rotation = v.cam_from_world.rotation * turn;
   }
   const VectorXd x = cameras.values_of(moved);
-  EXPECT_LT(x.dot(prior.information * x), 1e-6 * x.squaredNorm() *
-                                              prior.information.diagonal().maxCoeff());
+  EXPECT_LT(x.dot(prior.information * x),
+            1e-6 * x.squaredNorm() * prior.information.diagonal().maxCoeff());
   EXPECT_LT(prior.gradient.norm(), 1e-6);
 }
 

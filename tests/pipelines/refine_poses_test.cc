@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "datasets/readers/scene.h"
 #include "datasets/types/errors.h"
@@ -180,6 +181,35 @@ TEST(RefinePoses, PosesThatErrChangeNeitherScaleNorPlace) {
     for (const double t : {0.1, 0.5, 0.9})
       worst = std::max(worst, distance_to(house(), point_at(out.sketch, s, t)));
   EXPECT_LT(worst, 0.006) << "one pixel, where single cameras err by two";
+}
+
+// Whether other cameras are tried for a house that stands on a table, with points whose pixels are
+// off by so much to some side.
+bool tries_others_on_table(double off_px) {
+  const std::vector<View> views = ring_of_views(20, kHouseMiddle, 3);
+  Scene scene;
+  scene.views = views;
+  for (int i = 0; i < 60; ++i) {
+    ScenePoint point;
+    for (int k = 0; k < 3; ++k) point.position[k] = 0.5 + 0.4 * std::sin(2.7 * i + 1.9 * k * i + k);
+    for (int v = 0; v < int(views.size()); ++v) {
+      double depth;
+      const Vector2d off((i + v) % 2 ? off_px : -off_px, (i + v / 2) % 3 ? off_px : -off_px);
+      point.sights.push_back({v, views[v].project(point.position, &depth) + off});
+    }
+    scene.points.push_back(point);
+  }
+  EdgeWorld world = make_edge_world(views, house_edgels(views));
+  world.object.table.emplace(Vector3d::UnitZ(), -0.2);
+  RunReport report;
+  pose_and_fit(scene, world, {}, &report, nullptr);
+  return std::any_of(report.counts.begin(), report.counts.end(),
+                     [](const auto& count) { return count.first == "pose_offset_after_px"; });
+}
+
+TEST(RefinePoses, AmongThingsPointsThatLieBesideTheirPixelsAreReasonEnough) {
+  EXPECT_TRUE(tries_others_on_table(0.4));
+  EXPECT_FALSE(tries_others_on_table(0));
 }
 
 TEST(RefinePoses, AWrongFocalLengthIsFound) {
