@@ -47,6 +47,12 @@ class CameraSystem {
     Eigen::VectorXd cameras;
   };
 
+  // Which rows count: all, those of every other stroke, or those of every other view of a camera.
+  struct Part {
+    enum By { kAll, kStrokes, kViews } by;
+    int half;
+  };
+
   void list_rows(const Observation& o, const EdgeWorld& world);
   void weigh();
   std::vector<double> sigma_of_strokes(const std::vector<double>& offsets) const;
@@ -54,11 +60,6 @@ class CameraSystem {
   double distance(const Row& row, Linear* linear, const PointJacobian* moves = nullptr) const;
   double cost() const;
   void linearise(std::vector<Linear>* rows) const;
-  // Which rows count: all, those of every other stroke, or those of every other view of a camera.
-  struct Part {
-    enum By { kAll, kStrokes, kViews } by;
-    int half;
-  };
   bool counts(const Row& row, const Part& part) const;
   void assemble(const std::vector<Linear>& rows, double damping,
                 const Part& part = {Part::kAll, 0});

@@ -6,7 +6,6 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kReachPx = 2;
 constexpr double kErrPx = 0.075;   // what poses that err less make of strokes is no matter
 constexpr double kRare = 1.645;    // exact poses in one scene of eight to twenty
 constexpr double kExactPx = 0.02;  // poses err at least by this
@@ -17,7 +16,7 @@ constexpr double kLoose = 3;       // times the offsets, which do not reach beyo
 Misfit misfit(const Posed& posed, const StatedCameras& stated) {
   Misfit out;
   if (posed.sketch.size() == 0) return out;
-  const Observation o = look(posed, kReachPx);
+  const Observation o = look(posed, kCameraReachPx);
   out.rows = int(o.matches.matches.size());
   if (out.rows == 0) return out;
   const CameraEvidence evidence = camera_evidence(posed.sketch, o, posed.world, stated, {});

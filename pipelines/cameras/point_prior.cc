@@ -43,15 +43,6 @@ std::vector<SightTerm> terms_of(const CameraUnknowns& cameras, const ScenePoint&
   return terms;
 }
 
-// Of all sights, in one direction.
-double scatter_px(const std::vector<std::vector<SightTerm>>& of_point) {
-  std::vector<double> apart;
-  for (const auto& terms : of_point)
-    for (const SightTerm& term : terms)
-      for (const double r : {term.residual.x(), term.residual.y()}) apart.push_back(std::abs(r));
-  return apart.empty() ? kLeastSigma : std::max(kLeastSigma, normal_sigma(apart));
-}
-
 // Where the unknowns of a sight's camera stand among all: its pose, then what it shares.
 std::vector<int> columns_of(const CameraUnknowns& cameras, const SightTerm& term) {
   std::vector<int> columns;
@@ -121,7 +112,7 @@ CameraQuadratic point_prior(const CameraUnknowns& cameras, const std::vector<Sce
   }
   CameraQuadratic sum{MatrixXd::Zero(cameras.size(), cameras.size()),
                       VectorXd::Zero(cameras.size())};
-  const double sigma = scatter_px(of_point);
+  const double sigma = std::max(kLeastSigma, points_off_px(cameras.current(), points));
   for (const auto& terms : of_point) add_point(cameras, terms, sigma, &sum);
   return sum;
 }

@@ -11,6 +11,9 @@
 
 namespace sketchsplat {
 
+/// [px] How far beside strokes edgels tell of cameras that may err.
+constexpr double kCameraReachPx = 2;
+
 /// First strokes by cameras that may err.
 struct Posed {
   EdgeWorld world;

@@ -20,10 +20,10 @@ namespace {
 
 constexpr double kLowShare = 0.4;  // of the edgels: strokes that explain less may be accidents
 constexpr double kTimesChance = 2;
-constexpr double kLeastShare = 0.1;  // of strokes by stated cameras that can be mended
-constexpr double kAstrayPx = 0.4;    // strokes by cameras that are right lie stiller in views
-constexpr double kStillPx = 0.25;    // edgels lie on strokes, by such cameras
-constexpr double kReachPx = 2, kExactPx = 1e-3;
+constexpr double kLeastShare = 0.1;   // of strokes by stated cameras that can be mended
+constexpr double kAstrayPx = 0.4;     // strokes by cameras that are right lie stiller in views
+constexpr double kStillPx = 0.25;     // edgels lie on strokes, by such cameras
+constexpr double kHeldPx = 1e-3;      // standard deviation of cameras that strokes do not move
 constexpr double kPointsOffPx = 0.1;  // points of cameras that are right lie stiller in views
 // Times these edgels, for cameras to move of which strokes say that they err, and for others; none
 // fewer among things, whose few strokes fit any cameras.
@@ -110,10 +110,10 @@ Misfit check_cameras(const Posed& posed, const StatedCameras& stated, double sha
 // Share of the edgels that lie on strokes as they do by cameras that are right, once the strokes
 // have settled: where they were lifted says little of cameras.
 double still_share(const Posed& posed) {
-  const Observation o = look(posed, kReachPx);
+  const Observation o = look(posed, kCameraReachPx);
   if (o.matches.matches.empty()) return 0;
   CameraPrior still;
-  still.pose_px = kExactPx, still.shared = false;
+  still.pose_px = kHeldPx, still.shared = false;
   const CameraFit fit = fit_cameras(posed.sketch, o, posed.world, {posed.world.views}, still, {});
   return explained(fit.sketch, posed.world, kStillPx).share;
 }

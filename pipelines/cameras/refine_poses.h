@@ -18,7 +18,8 @@ struct PosedStrokes {
 
 /// Lifts the edgels and fits strokes; where the strokes' offsets in single views, or a focal length
 /// or lens that fits them better, say that the cameras err (--refine-poses auto; always with "on",
-/// never with "off"), settles cameras and strokes together (settle.h) and keeps these cameras if as
+/// never with "off"; of an object among things without masks also if the scene's points lie beside
+/// their pixels), settles cameras and strokes together (settle.h) and keeps these cameras if as
 /// many edgels lie on strokes. Views whose edgels do not fit the strokes of the others are left out
 /// with a warning. Without any of this nothing changes. Throws TooLittleError if views agree on no
 /// more than they would by accident.

@@ -15,7 +15,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kReachPx = 2, kSpacingPx = 6;
+constexpr double kSpacingPx = 6;
 constexpr double kLowShare = 0.4;  // of the edgels: strokes that explain less may be accidents
 constexpr double kStillPx = 0.1;   // strokes stay as they were lifted
 constexpr double kMovedPx = 0.2;   // they are lifted, and cameras are fitted again
@@ -24,7 +24,7 @@ constexpr int kMostLifts = 5, kMostReturns = 3;
 // Match, move cameras and strokes, and match again with a reach that shrinks.
 double refine(const StatedCameras& stated, const CameraPrior& prior, Posed* posed) {
   double offset = 0;
-  for (const double reach : {kReachPx, kReachPx, 1.5, 1.0}) {
+  for (const double reach : {kCameraReachPx, kCameraReachPx, 1.5, 1.0}) {
     if (posed->sketch.size() == 0) break;
     const Observation o = look(*posed, reach);
     if (o.matches.matches.empty()) break;
@@ -99,7 +99,7 @@ EdgeWorld coarse_to_fine(const EdgeWorld& world, int factor, const StatedCameras
 // Whether the strokes, once the poses fit, are sure that what views share is wrong.
 bool shared_is_wrong(const Posed& posed, const StatedCameras& stated, CameraPrior prior) {
   if (posed.sketch.size() == 0) return false;
-  const Observation o = look(posed, kReachPx);
+  const Observation o = look(posed, kCameraReachPx);
   if (o.matches.matches.empty()) return false;
   prior.shared = true;
   return camera_evidence(posed.sketch, o, posed.world, stated, prior).shared > kSureOfShared;
@@ -161,7 +161,7 @@ double scale_sigma(const Posed& posed, const StatedCameras& stated, const Misfit
   CameraPrior prior = prior_of(off);
   for (size_t v = 0; v < stated.views.size(); ++v)
     if (posed.world.views[v].camera.fx != stated.views[v].camera.fx) prior.shared = true;
-  const Observation o = look(posed, kReachPx);
+  const Observation o = look(posed, kCameraReachPx);
   if (o.matches.matches.empty()) return 0;
   return fit_cameras(posed.sketch, o, posed.world, stated, prior, {0}).scale_sigma;
 }
