@@ -59,6 +59,13 @@ EdgeWorld world_of(double radius, const std::vector<Polyline>& edges, bool brigh
   return make_edge_world(views(), maps);
 }
 
+// The same in other units of length: 1 is `unit` there.
+EdgeWorld in_units(double unit, const EdgeWorld& world) {
+  std::vector<View> views = world.views;
+  for (View& v : views) v.cam_from_world.translation *= unit;
+  return make_edge_world(views, world.maps);
+}
+
 CurvePoints vertical_line(double x, double y, double half) {
   CurvePoints c;
   const int n = 60;
@@ -89,6 +96,15 @@ TEST(Rim, AnEdgeIsNoRim) {
   const Rim rim = fit_rim(world, vertical_line(0.1, 0.9, 0.3), {});
   EXPECT_FALSE(rim.is_round(world.footprint));
   EXPECT_EQ(rim.fixed_views, 32);
+}
+
+TEST(Rim, UnitsOfLengthDoNotMatter) {
+  const EdgeWorld world = world_of(0, cube_edges(Vector3d::Constant(0.1), 0.8), true);
+  for (const double unit : {1e-3, 1e3}) {
+    CurvePoints line = vertical_line(0.1, 0.9, 0.3);
+    line.position *= unit;
+    EXPECT_EQ(fit_rim(in_units(unit, world), line, {}).fixed_views, 32) << unit;
+  }
 }
 
 TEST(Rim, EdgesOfAThinSheetAreNoRimsThoughARoundBarWouldLookAlike) {
