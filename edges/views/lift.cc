@@ -317,19 +317,24 @@ struct Lifted {
   std::vector<Match> matches;  // none: it is not
 };
 
-// The edgels of a chain: each by itself, and then, to both sides, where the edge of a neighbour
+// The edgels of a chain. Every third by itself, the others if the edge of the one before them, that
+// many views see, does not go on to them; and then, to both sides, where the edge of a neighbour
 // that many views see goes on, if more views agree there.
 void lift_chain(const Sweeper& sweeper, int view, bool along, const int* seeds, int count,
                 Lifted* out) {
-  for (int k = 0; k < count; ++k)
-    if (!sweeper.lift(view, seeds[k], &out[k].point, &out[k].matches)) out[k].matches.clear();
-  if (!along) return;
+  constexpr int kEvery = 3;
   const auto follow = [&](int from, int k) {
-    if (out[from].matches.empty() || !sweeper.is_sure(out[from].point)) return;
+    if (out[from].matches.empty() || !sweeper.is_sure(out[from].point)) return false;
     Lifted l;
-    if (!sweeper.follow(out[from].point, view, seeds[k], &l.point, &l.matches)) return;
+    if (!sweeper.follow(out[from].point, view, seeds[k], &l.point, &l.matches)) return false;
     if (out[k].matches.empty() || l.point.views > out[k].point.views) out[k] = std::move(l);
+    return true;
   };
+  for (int k = 0; k < count; ++k) {
+    if (along && k % kEvery != 0 && follow(k - 1, k)) continue;
+    if (!sweeper.lift(view, seeds[k], &out[k].point, &out[k].matches)) out[k].matches.clear();
+  }
+  if (!along) return;
   for (int k = 1; k < count; ++k) follow(k - 1, k);
   for (int k = count - 2; k >= 0; --k) follow(k + 1, k);
 }

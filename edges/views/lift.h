@@ -57,17 +57,18 @@ struct EdgePoint {
 };
 
 struct LiftOptions {
-  double stride_px = 3.0;   ///< [px] along a chain between edgels that are lifted
-  int sweep_views = 24;     ///< views that score the depths of an edgel
-  int min_views = 4;        ///< views that must agree
+  double stride_px = 3.0;  ///< [px] along a chain between edgels that are lifted
+  int sweep_views = 24;    ///< views that score the depths of an edgel
+  int min_views = 4;       ///< views that must agree
   /// Edges of neighbours are tried, too: more points where few views see an edge, and of edges that
   /// run close to one another more that lie on the one more views see.
   bool follow = true;
 };
 
-/// Space sweep: every edgel (every stride_px of a chain) is tried at all depths inside the bounds;
-/// the depth and tangent on which most other views agree is kept and refined. Where a neighbour on
-/// the chain lies on an edge that many views see, the place where that goes on is tried, too.
+/// Space sweep: an edgel (every stride_px of a chain) is tried at all depths inside the bounds; the
+/// depth and tangent on which most other views agree is kept and refined. Where a neighbour on the
+/// chain lies on an edge that many views see, the place where that goes on is tried, too, and two
+/// of three edgels are tried nowhere else if it does.
 /// Edgels that a good point already explains are not lifted again, points outside of the object
 /// are left out. Same result for any number of threads.
 std::vector<EdgePoint> lift_edges(const EdgeWorld& world, const LiftOptions& options);
