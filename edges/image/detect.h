@@ -81,7 +81,7 @@ struct MeaningOptions {
   double most_false = 10000;
   /// Edgels that are kept at most, in side lengths of the picture (square root of its area): the
   /// least meaningful go first. 0: all stay
-  double most_sides = 16;
+  double most_sides = 28;
 };
 
 struct DetectOptions {
