@@ -24,6 +24,7 @@ constexpr double kAroundMasks = 2.5, kAroundSilhouettes = 8;
 constexpr double kAngleDeg = 12;    // largest angle of its plane to the tangent
 constexpr double kFollowed = 0.8;   // of the views of one point that see the next on its edge
 constexpr double kLeastSine = 0.1;  // of a line of sight and the edge along which one goes on
+constexpr int kEvery = 3;           // edgels of a chain, one of which is tried at all depths anyway
 
 using Matrix34f = Eigen::Matrix<float, 3, 4>;
 
@@ -317,12 +318,11 @@ struct Lifted {
   std::vector<Match> matches;  // none: it is not
 };
 
-// The edgels of a chain. Every third by itself, the others if the edge of the one before them, that
-// many views see, does not go on to them; and then, to both sides, where the edge of a neighbour
-// that many views see goes on, if more views agree there.
+// The edgels of a chain: the first of kEvery by itself, the others only if the edge of the one
+// before them, that many views see, does not go on to them; and then, to both sides, where the edge
+// of a neighbour that many views see goes on, if more views agree there.
 void lift_chain(const Sweeper& sweeper, int view, bool along, const int* seeds, int count,
                 Lifted* out) {
-  constexpr int kEvery = 3;
   const auto follow = [&](int from, int k) {
     if (out[from].matches.empty() || !sweeper.is_sure(out[from].point)) return false;
     Lifted l;

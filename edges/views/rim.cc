@@ -117,7 +117,7 @@ bool solve(const Sightings& sightings, bool fixed, Model* model) {
       H += w * s->row * s->row.transpose();
       g += w * s->row * s->place;
     }
-  if (fixed)  // as large as the others: units of length must not matter
+  if (fixed)  // no pivot of another magnitude: units of length must not matter
     H.row(2).setZero(), H.col(2).setZero(), H(2, 2) = H.trace(), g(2) = 0;
   const Eigen::LDLT<Eigen::Matrix3d> ldlt(H);
   if (ldlt.info() != Eigen::Success || ldlt.rcond() < 1e-9) return false;

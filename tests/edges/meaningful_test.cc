@@ -116,6 +116,21 @@ TEST(Meaningful, ABudgetKeepsTheLongSmoothEdgeFirst) {
   EXPECT_GE(on_step(map), 0.8 * 240 * 1.04);
 }
 
+TEST(Meaningful, TheUsualBudgetHoldsAFacadeOfSixtyWindows) {
+  constexpr int kColumns = 12, kRows = 5, kWide = 40, kHigh = 56;
+  Picture p = grey_picture(800, 600, 0.3f);
+  for (int column = 0; column < kColumns; ++column)
+    for (int row = 0; row < kRows; ++row)
+      for (int y = 0; y < kHigh; ++y)
+        for (int x = 0; x < kWide; ++x) add(&p, 15 + 65 * column + x, 10 + 118 * row + y, 0.3);
+  add_noise(&p, 1.0 / 255);
+  const EdgelMap all = detect_edges(p, {});
+  ASSERT_GT(all.edgels.size(), 0.9 * kColumns * kRows * 2 * (kWide + kHigh));
+  const double side = std::sqrt(800.0 * 600);
+  EXPECT_EQ(most_meaningful(all, MeaningOptions().most_sides * side).edgels.size(),
+            all.edgels.size());
+}
+
 // The outline, whose contrast the mask makes, is much of what lies around an edge on a rod.
 TEST(Meaningful, AShortEdgeOnARodStaysHoweverStrongTheOutlineIs) {
   constexpr int kEdge = 120, kLength = 12;
