@@ -17,7 +17,6 @@ namespace {
 constexpr double kRotationError = 1e-3;  // of R^T R
 constexpr double kStep = 1.0;            // [px] between the edgels of a polyline
 constexpr double kTangentReach = 2.0;    // [px] to either side, for its direction
-constexpr double kReach = 4.0;           // [px] of the look-up
 constexpr int kMinChain = 6;             // [px] shorter edges are dropped
 
 std::string name_of_view(const InputView& view, size_t i) {
@@ -113,8 +112,7 @@ class GivenEdges : public Detector {
       map.mask = Image<std::uint8_t>(v.width, v.height);
       for (size_t i = 0; i < mask.data.size(); ++i) map.mask.data[i] = mask.data[i] >= 0.5f;
     }
-    build_lookup(&map, kReach);
-    return undistort_edgels(std::move(map), view, kMinChain, kReach);
+    return undistort_edgels(std::move(map), view, kMinChain);
   }
 
  private:

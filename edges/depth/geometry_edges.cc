@@ -344,7 +344,6 @@ EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
   for (Edgel& e : found.edgels) e.x += float(box.x), e.y += float(box.y);
   map.edgels = std::move(found.edgels);
   map.chain = std::move(found.chain);
-  build_lookup(&map, options.reach_px);
   return map;
 }
 

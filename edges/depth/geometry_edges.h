@@ -15,7 +15,6 @@ struct GeometryOptions {
   double noise = 4.0;        ///< all also exceed this many standard deviations of their noise
   bool rims = false;         ///< keep the contours of round surfaces, which are no edges
   int min_chain = 6;         ///< [px] shorter chains are dropped
-  double reach_px = 4.0;     ///< [px] of the look-up
 };
 
 /// What is measured in the smooth parts of a view's maps; thresholds follow it.

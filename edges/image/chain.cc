@@ -2,32 +2,36 @@
 #include "edges/image/chain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sketchsplat {
 namespace {
 
-// The neighbour that continues edgel i in direction `side` (+1/-1) of its tangent; -1 if there is
-// none.
-int continuation(const Candidates& c, int i, int side, bool signed_normals) {
+// The neighbours that continue edgel i against its tangent and along it; -1 where there is none.
+std::array<int, 2> continuations(const Candidates& c, int i, bool signed_normals) {
   const Edgel& e = c.edgels[i];
-  const float tx = -e.ny * side, ty = e.nx * side;
   const int px = int(std::lround(e.x)), py = int(std::lround(e.y));
-  int best = -1;
-  float best_cost = 1e9f;
-  for (int y = std::max(0, py - 2); y <= std::min(c.at.height - 1, py + 2); ++y)
-    for (int x = std::max(0, px - 2); x <= std::min(c.at.width - 1, px + 2); ++x) {
-      const int j = c.at.at(x, y);
+  const int left = std::max(0, px - 2), right = std::min(c.at.width - 1, px + 2);
+  std::array<int, 2> best = {-1, -1};
+  std::array<float, 2> best_cost = {1e9f, 1e9f};
+  for (int y = std::max(0, py - 2); y <= std::min(c.at.height - 1, py + 2); ++y) {
+    const int* row = c.at.row(y);
+    for (int x = left; x <= right; ++x) {
+      const int j = row[x];
       if (j < 0 || j == i) continue;
       const Edgel& f = c.edgels[j];
       const float dx = f.x - e.x, dy = f.y - e.y;
-      const float ahead = dx * tx + dy * ty, aside = std::abs(dx * e.nx + dy * e.ny);
+      const float along = dy * e.nx - dx * e.ny, ahead = std::abs(along);
+      const float aside = std::abs(dx * e.nx + dy * e.ny);
       const float dot = e.nx * f.nx + e.ny * f.ny;
       const float agree = signed_normals ? dot : std::abs(dot);
       if (ahead < 0.3f || ahead > 2.3f || aside > 0.9f * ahead || agree < 0.6f) continue;
       const float cost = std::sqrt(dx * dx + dy * dy) + aside + 2 * (1 - agree);
-      if (cost < best_cost) best_cost = cost, best = j;
+      const int side = along > 0;
+      if (cost < best_cost[side]) best_cost[side] = cost, best[side] = j;
     }
+  }
   return best;
 }
 
@@ -51,8 +55,8 @@ void chain_edgels(const Candidates& c, float high, int min_chain, bool signed_no
   const int n = int(c.edgels.size());
   std::vector<int> next[2] = {std::vector<int>(n), std::vector<int>(n)};
   for (int i = 0; i < n; ++i) {
-    next[0][i] = continuation(c, i, -1, signed_normals);
-    next[1][i] = continuation(c, i, +1, signed_normals);
+    const std::array<int, 2> to = continuations(c, i, signed_normals);
+    next[0][i] = to[0], next[1][i] = to[1];
   }
   std::vector<bool> done(n);
   map->chain.assign(1, 0);

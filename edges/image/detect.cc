@@ -167,8 +167,10 @@ bool localise(const Gradient& g, int x, int y, Edgel* e) {
 }
 
 Candidates find_candidates(const Gradient& g, float low) {
+  constexpr size_t kPixels = 4;  // per edgel, in pictures of nothing but edges
   Candidates c;
   c.at = Image<int>(g.magnitude.cols, g.magnitude.rows, -1);
+  c.edgels.reserve(g.magnitude.total() / kPixels);
   for (int y = 1; y + 1 < g.magnitude.rows; ++y)
     for (int x = 1; x + 1 < g.magnitude.cols; ++x) {
       Edgel e;
@@ -297,7 +299,6 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   map = detect_in(c, picture, search);
   if (sharpen_blurred(map, &search, &c)) map = detect_in(c, picture, search);
   map.grey = grey_part(c);
-  build_lookup(&map, options.reach_px);
   return map;
 }
 
@@ -306,6 +307,8 @@ std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep
   std::vector<int> kept;
   const bool judged = !from.meaning.empty() && int(to->meaning.size()) == to->num_chains();
   if (to->chain.empty()) to->chain.push_back(int(to->edgels.size()));
+  to->nearest.clear();
+  to->window_width = to->window_height = 0;
   for (int c = 0; c < from.num_chains(); ++c)
     for (int begin = from.chain[c], end; begin < from.chain[c + 1]; begin = end + 1) {
       for (end = begin; end < from.chain[c + 1] && keep[end];) ++end;
@@ -322,24 +325,16 @@ std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep
 
 namespace {
 
-// Chessboard distance to the nearest pixel with an edgel, negative, where there is none: forward
-// and backward (Rosenfeld, Pfaltz: Sequential operations in digital picture processing, JACM 1966).
+// Chessboard distance to the nearest pixel with an edgel, negative, where there is none.
 void fill_distances(EdgelMap* map) {
-  const int w = map->window_width, h = map->window_height;
-  const auto far = [&](int x, int y) {  // minus the distance; 0 at an edgel
-    return x < 0 || y < 0 || x >= w || y >= h ? -(w + h)
-                                              : std::min(0, map->nearest[size_t(y) * w + x]);
-  };
-  for (int way = 1; way >= -1; way -= 2)
-    for (int i = 0; i < h; ++i)
-      for (int j = 0; j < w; ++j) {
-        const int y = way > 0 ? i : h - 1 - i, x = way > 0 ? j : w - 1 - j;
-        int& here = map->nearest[size_t(y) * w + x];
-        if (here >= 0) continue;
-        const int before =
-            std::max({far(x - way, y), far(x - 1, y - way), far(x, y - way), far(x + 1, y - way)});
-        here = way > 0 ? before - 1 : std::max(here, before - 1);
-      }
+  const cv::Mat1i nearest(map->window_height, map->window_width, map->nearest.data());
+  cv::Mat1f distance;
+  cv::distanceTransform(nearest < 0, distance, cv::DIST_C, cv::DIST_MASK_3);
+  const float* far = distance.ptr<float>();
+  for (int& here : map->nearest) {
+    if (here < 0) here = -int(*far);
+    ++far;
+  }
 }
 
 }  // namespace
@@ -359,17 +354,24 @@ void build_lookup(EdgelMap* map, double reach_px) {
   map->window_height = int(std::ceil(y_max)) + r + 1 - map->y0;
   map->nearest.assign(size_t(map->window_width) * map->window_height, -1);
   std::vector<float> best(map->nearest.size(), float(reach_px * reach_px));
+  const int side = 2 * r + 1;  // of the square about an edgel, which the window holds
+  std::vector<float> across(side);
   for (int i = 0; i < int(map->edgels.size()); ++i) {
     const Edgel& e = map->edgels[i];
-    const int cx = int(std::lround(e.x)), cy = int(std::lround(e.y));
-    for (int y = cy - r; y <= cy + r; ++y)
-      for (int x = cx - r; x <= cx + r; ++x) {
-        const int u = x - map->x0, v = y - map->y0;
-        if (u < 0 || v < 0 || u >= map->window_width || v >= map->window_height) continue;
-        const float d = (x - e.x) * (x - e.x) + (y - e.y) * (y - e.y);
-        const size_t k = size_t(v) * map->window_width + u;
-        if (d < best[k]) best[k] = d, map->nearest[k] = i;
+    const int left = int(std::lround(e.x)) - r, top = int(std::lround(e.y)) - r;
+    for (int k = 0; k < side; ++k) across[k] = (left + k - e.x) * (left + k - e.x);
+    for (int y = top; y < top + side; ++y) {
+      const float down = (y - e.y) * (y - e.y);
+      const size_t first = size_t(y - map->y0) * map->window_width + (left - map->x0);
+      float* least = best.data() + first;
+      int* nearest = map->nearest.data() + first;
+      for (int k = 0; k < side; ++k) {  // without branches: the compiler makes vectors of it
+        const float d = across[k] + down;
+        const bool nearer = d < least[k];
+        least[k] = nearer ? d : least[k];
+        nearest[k] = nearer ? i : nearest[k];
       }
+    }
   }
   fill_distances(map);
 }

@@ -45,7 +45,7 @@ struct EdgelMap {
   /// In pixels of the image, never undistorted; null unless edgels are those of a picture.
   std::shared_ptr<const GreyPart> grey;
 
-  // Look-up window: the bounding box of the edgels plus the reach.
+  // Look-up, where it is built. Its window: the bounding box of the edgels plus the reach.
   int x0 = 0, y0 = 0, window_width = 0, window_height = 0;
   /// Per pixel of the window: the nearest edgel within the reach; where there is none, minus the
   /// distance to the nearest pixel that has one (chessboard, at least 1).
@@ -65,12 +65,15 @@ struct EdgelMap {
   }
 };
 
+/// [px] of the look-ups of an EdgeWorld.
+inline constexpr double kLookupPx = 4;
+
 /// Fills the look-up of a map for edgels within `reach_px` of a pixel centre.
-void build_lookup(EdgelMap* map, double reach_px);
+void build_lookup(EdgelMap* map, double reach_px = kLookupPx);
 
 /// Appends the runs of at least `min_chain` edgels within one chain that are marked, each as a
-/// chain of its own; returns where they were. `keep`: one mark per edgel of `from`. The lookup of
-/// `to` has to be built anew. Unless all chains of both were judged, none of `to` is afterwards.
+/// chain of its own; returns where they were. `keep`: one mark per edgel of `from`. `to` has
+/// no look-up afterwards; unless all chains of both were judged, none of `to` is.
 std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep, int min_chain,
                              EdgelMap* to);
 
@@ -90,7 +93,6 @@ struct DetectOptions {
   double high_sigma = 7.0;    ///< an edge starts at this many standard deviations of the noise
   double low_sigma = 3.0;     ///< and is followed down to this many
   int min_chain = 6;          ///< [px] shorter chains are dropped
-  double reach_px = 4.0;      ///< [px] of the look-up
   double most_blur_px = 1.0;  ///< [px] pictures blurred by more are sharpened; 0: none
   MeaningOptions meaning;
 };
@@ -99,7 +101,7 @@ struct DetectOptions {
 /// in this picture, position at the maximum along the normal; where a scale shows none, of coarser
 /// ones. A blurred picture is sharpened (sharpen.h) when its edgels have told by how much it is.
 /// Alpha, if any, is the mask: its outline is an edge, and colours outside it do not exist. An
-/// empty picture gives an empty map.
+/// empty picture gives an empty map. Without a look-up.
 EdgelMap detect_edges(const Picture& picture, const DetectOptions& options);
 
 /// Edge map in [0, 1] for people and rasterizers: a ridge of `sigma_px` along every edgel.

@@ -72,7 +72,6 @@ EdgelMap detect_ridges(const Image<float>& map, const MapOptions& options) {
   for (int& k : c.at.data)
     if (k >= 0 && c.edgels[k].strength < low) k = -1;
   chain_edgels(c, float(options.high) * top, options.min_chain, false, &out);
-  build_lookup(&out, options.reach_px);
   return out;
 }
 

@@ -10,7 +10,6 @@ struct MapOptions {
   double high = 0.35;  ///< share of the map's strong ridges (99th percentile) where an edge starts
   double low = 0.12;   ///< and down to which it is followed
   int min_chain = 6;   ///< [px] shorter chains are dropped
-  double reach_px = 4.0;  ///< [px] of the look-up
 };
 
 /// Edgels from somebody's edge map (DexiNed, PiDiNet, ...): values in [0, 1], thick edges, white on

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace sketchsplat {
@@ -27,46 +26,63 @@ constexpr double kMaxima = 4;    // edgels are maxima: the strongest of about as
 constexpr double kOwnWidth = 2;  // [px] of the pixels around an edge that are as strong as it is
 constexpr double kPieces = 30;   // pieces that begin at a place and end differently
 
-// How many pixels of the neighbourhood of a place are at least so strong.
+// How many pixels of the neighbourhood of a place, three by three cells, are at least so strong.
 class Neighbourhood {
  public:
   Neighbourhood(const cv::Mat1f& magnitude, const cv::Mat1b& outline)
       : nx_(int(magnitude.cols / kCell) + 1), ny_(int(magnitude.rows / kCell) + 1) {
-    cells_.resize(size_t(nx_) * ny_);
-    for (auto& cell : cells_) cell.fill(0);
+    std::vector<Histogram> cells(size_t(nx_) * ny_, Histogram{});
     for (int y = 0; y < magnitude.rows; ++y)
       for (int x = 0; x < magnitude.cols; ++x)
-        if (!outline(y, x)) ++cells_[cell(x, y)][bin(magnitude(y, x))];
-    for (auto& cell : cells_)
-      for (int b = kBins - 2; b >= 0; --b) cell[b] += cell[b + 1];
+        if (!outline(y, x)) ++cells[cell(x, y)][bin(magnitude(y, x))];
+    for (Histogram& c : cells)
+      for (int b = kBins - 2; b >= 0; --b) c[b] += c[b + 1];
+    around_.assign(cells.size(), Histogram{});
+    own_.assign(cells.size(), 0);
+    for (int k = 0; k < int(cells.size()); ++k)
+      each_around(k, [&](int j) {
+        for (int b = 0; b < kBins; ++b) around_[j][b] += cells[k][b];
+      });
   }
 
   int cell(double x, double y) const {
     const int i = std::clamp(int(x / kCell), 0, nx_ - 1);
     return std::clamp(int(y / kCell), 0, ny_ - 1) * nx_ + i;
   }
+  // The cells of the edgels of the chain that is asked about next.
+  void set_own(std::vector<int> cells) {
+    const auto count = [&](int sign) {
+      for (const int k : own_cells_) each_around(k, [&](int j) { own_[j] += sign; });
+    };
+    count(-1);
+    own_cells_ = std::move(cells);
+    count(1);
+  }
   // Share of the pixels around a cell that are at least so strong, without those of the chain
-  // itself and of the outline. `own`: edgels of the chain per cell.
-  double share(int cell, float strength, const std::map<int, int>& own) const {
-    const int b = bin(strength);
-    double all = 0, strong = 0, mine = 0;
-    for (int y = std::max(0, cell / nx_ - 1); y <= std::min(ny_ - 1, cell / nx_ + 1); ++y)
-      for (int x = std::max(0, cell % nx_ - 1); x <= std::min(nx_ - 1, cell % nx_ + 1); ++x) {
-        const auto& c = cells_[size_t(y) * nx_ + x];
-        all += c[0], strong += c[b];
-        const auto found = own.find(y * nx_ + x);
-        if (found != own.end()) mine += kOwnWidth * found->second;
-      }
+  // itself and of the outline.
+  double share(int cell, float strength) const {
+    const double all = around_[cell][0], strong = around_[cell][bin(strength)];
+    const double mine = kOwnWidth * own_[cell];
     return (std::max(0.0, strong - mine) + 1) / (std::max(0.0, all - mine) + 1);
   }
 
  private:
+  using Histogram = std::array<int, kBins>;  // from a bin on
+
   static int bin(float strength) {
     const double log = std::log(std::max(strength, 1e-6f));
     return std::clamp(int((log - kFirstBin) * kBinsPerE), 0, kBins - 1);
   }
+  template <typename Visit>
+  void each_around(int cell, const Visit& visit) const {
+    const int cx = cell % nx_, cy = cell / nx_;
+    for (int y = std::max(0, cy - 1); y <= std::min(ny_ - 1, cy + 1); ++y)
+      for (int x = std::max(0, cx - 1); x <= std::min(nx_ - 1, cx + 1); ++x) visit(y * nx_ + x);
+  }
+
   int nx_, ny_;
-  std::vector<std::array<int, kBins>> cells_;  // from a bin on
+  std::vector<Histogram> around_;
+  std::vector<int> own_, own_cells_;  // edgels of the chain around a cell, and where they are
 };
 
 // A place on a chain, and how unlikely [nat] it would be in texture.
@@ -80,14 +96,16 @@ double degrees_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) * 180 / M_PI;
 }
 
-std::vector<Place> places_of(const EdgelMap& map, int chain, const Neighbourhood& around,
-                             const cv::Mat1b& outline) {
+std::vector<Place> places_of(const EdgelMap& map, int chain, const cv::Mat1b& outline,
+                             Neighbourhood* around) {
   const int begin = map.chain[chain], end = map.chain[chain + 1];
-  std::map<int, int> own;
+  std::vector<int> own;
   for (int i = begin; i < end; ++i) {
     const Edgel& e = map.edgels[i];  // maxima lie within the picture, off its last pixels
-    if (!outline(int(std::lround(e.y)), int(std::lround(e.x)))) ++own[around.cell(e.x, e.y)];
+    if (!outline(int(std::lround(e.y)), int(std::lround(e.x))))
+      own.push_back(around->cell(e.x, e.y));
   }
+  around->set_own(std::move(own));
   std::vector<Place> out;
   std::vector<Eigen::Vector2d> at;
   double since = kStep;
@@ -96,7 +114,7 @@ std::vector<Place> places_of(const EdgelMap& map, int chain, const Neighbourhood
     if (i > begin) since += std::hypot(e.x - map.edgels[i - 1].x, e.y - map.edgels[i - 1].y);
     if (since < kStep) continue;
     since -= kStep;
-    const double share = kMaxima * around.share(around.cell(e.x, e.y), e.strength, own);
+    const double share = kMaxima * around->share(around->cell(e.x, e.y), e.strength);
     out.push_back({i, 0, -std::log(std::min(1.0, share)), false});
     at.emplace_back(e.x, e.y);
   }
@@ -156,12 +174,12 @@ void cut(const std::vector<Place>& places, int last_edgel, double tests, double 
 
 void keep_meaningful(const cv::Mat1f& magnitude, const cv::Mat1b& outline,
                      const MeaningOptions& options, EdgelMap* map) {
-  const Neighbourhood around(magnitude, outline);
+  Neighbourhood around(magnitude, outline);
   const double tests = kPieces * std::max(1.0, double(map->edgels.size()) / kStep);
   const double least = options.most_false > 0 ? -std::log10(options.most_false) : -double(INFINITY);
   std::vector<Piece> pieces;
   for (int c = 0; c < map->num_chains(); ++c) {
-    const std::vector<Place> places = places_of(*map, c, around, outline);
+    const std::vector<Place> places = places_of(*map, c, outline, &around);
     if (options.most_false > 0) {
       cut(places, map->chain[c + 1], tests, least, &pieces);
     } else {

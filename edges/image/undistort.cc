@@ -40,7 +40,7 @@ void resample(const cv::Mat2f& from, Image<float>* channel) {
 
 }  // namespace
 
-EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain, double reach_px) {
+EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain) {
   if (view.lens.is_identity()) return found;
   std::vector<char> keep(found.edgels.size());
   for (size_t i = 0; i < keep.size(); ++i) {
@@ -57,7 +57,6 @@ EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain, doubl
   append_runs(found, keep, min_chain, &out);
   out.mask = std::move(found.mask);
   out.grey = std::move(found.grey);
-  build_lookup(&out, reach_px);
   return out;
 }
 

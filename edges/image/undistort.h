@@ -13,7 +13,7 @@ namespace sketchsplat {
 /// steeper edges where it is drawn smaller. Edgels that the lens draws at no more than a quarter of
 /// the ideal size, or that no ideal pixel is drawn at, are dropped as append_runs does; the look-up
 /// is built anew. Noise and mask stay those of the image. Without distortion nothing changes.
-EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain, double reach_px);
+EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain);
 
 /// The other way round, to draw edgels over the image; without a look-up.
 EdgelMap distort_edgels(EdgelMap ideal, const View& view);

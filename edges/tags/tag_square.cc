@@ -37,7 +37,6 @@ constexpr double kPixelFloor = 0.003;  // [px] by which no number of views measu
 constexpr double kBorder = 0.125;      // of the side: the white one
 constexpr double kClearPx = 3;         // around what is left out
 constexpr int kMinChain = 3;
-constexpr double kLookupPx = 4;  // as the detectors'
 
 const Vector2d kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
 
@@ -330,7 +329,6 @@ EdgelMap without_tags(const EdgelMap& map, const View& view, const std::vector<T
   out.mask = map.mask;
   out.grey = map.grey;
   append_runs(map, keep, kMinChain, &out);
-  build_lookup(&out, kLookupPx);
   return out;
 }
 

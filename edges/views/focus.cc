@@ -10,16 +10,14 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kLookupPx = 4;  // as the detectors'
-constexpr int kMinChain = 3;     // edgels of a chain that leaves the region
+constexpr int kMinChain = 3;  // edgels of a chain that leaves the region
 
 // Does every corner of the region's box lie in front of the camera? Then a pixel is inside if a
 // point of the box is seen there: the pixel box of its corners, for simplicity.
 bool pixel_box(const View& view, const Eigen::AlignedBox3d& box, Eigen::AlignedBox2d* out) {
   for (int k = 0; k < 8; ++k) {
     double depth;
-    const Eigen::Vector2d p =
-        view.project(box.corner(Eigen::AlignedBox3d::CornerType(k)), &depth);
+    const Eigen::Vector2d p = view.project(box.corner(Eigen::AlignedBox3d::CornerType(k)), &depth);
     if (!(depth > 0)) return false;
     out->extend(p);
   }
@@ -34,7 +32,6 @@ EdgelMap kept(const EdgelMap& map, const std::vector<char>& keep) {
   out.mask = map.mask;
   out.grey = map.grey;
   append_runs(map, keep, kMinChain, &out);
-  build_lookup(&out, kLookupPx);
   return out;
 }
 

@@ -13,7 +13,8 @@
 
 namespace sketchsplat {
 
-/// Views, their edgels, and what every geometric step needs of them. Views and maps have one order.
+/// Views, their edgels, and what every geometric step needs of them. Views and maps have one order;
+/// maps have look-ups.
 struct EdgeWorld {
   std::vector<View> views;
   std::vector<EdgelMap> maps;
@@ -35,6 +36,7 @@ struct EdgeWorld {
 /// Bounds from the edgels' boxes in all views: with masks, the part of space that (nearly) every
 /// view sees inside its own box of edgels; without, the part of what the cameras look at that a
 /// quarter of them sees. Views without edgels do not vote. `bounds` is empty if nothing remains.
+/// Maps without a look-up get one.
 EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps);
 
 /// EdgeWorld::hull as the world is.

@@ -11,8 +11,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kLookupPx = 4.0;  // as the detectors'
-constexpr int kShortest = 3;       // edgels that still have a direction
+constexpr int kShortest = 3;  // edgels that still have a direction
 
 // Whether edgels lie where they lay.
 bool same_image(const View& a, const View& b) {
@@ -41,7 +40,7 @@ EdgelMap coarser(const EdgelMap& map, int factor) {
     out.chain.push_back(int(out.edgels.size()));
     if (!map.meaning.empty()) out.meaning.push_back(map.meaning[c]);
   }
-  build_lookup(&out, kLookupPx);
+  build_lookup(&out);
   return out;
 }
 
@@ -53,8 +52,10 @@ EdgeWorld recast(EdgeWorld world, std::vector<View> views) {
     const View& from = world.views[v];
     EdgelMap& map = world.maps[v];
     const bool lens = !from.lens.is_identity() || !views[v].lens.is_identity();
-    if (lens && !same_image(from, views[v]))
-      map = undistort_edgels(distort_edgels(std::move(map), from), views[v], 1, kLookupPx);
+    if (lens && !same_image(from, views[v])) {
+      map = undistort_edgels(distort_edgels(std::move(map), from), views[v], 1);
+      build_lookup(&map);
+    }
     world.plane_normal[v] = plane_normals(views[v], map);
   });
   world.views = std::move(views);

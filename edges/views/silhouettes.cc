@@ -24,8 +24,7 @@ constexpr double kBeyond = 0.1;  // of the region's longest side, that may be th
 constexpr int kCoarseRounds = 2, kRounds = 3;  // of colours and cuts
 constexpr int kAgainPx = 3;  // [px] around what most views hold, where it may be, too
 constexpr int kFewestViews = 3;
-constexpr double kLookupPx = 4;  // as the detectors'
-constexpr int kMinChain = 3;     // edgels of a chain that leaves the silhouette
+constexpr int kMinChain = 3;  // edgels of a chain that leaves the silhouette
 
 // Places that nearly all views which see them hold, on a grid.
 struct Held {
@@ -253,7 +252,7 @@ EdgelMap on_silhouette(const EdgelMap& map, const View& view, const Image<uint8_
   out.noise = map.noise, out.blur = map.blur;
   out.grey = map.grey;
   append_runs(from, keep, kMinChain, &out);
-  build_lookup(&out, kLookupPx);
+  build_lookup(&out);
   return out;
 }
 

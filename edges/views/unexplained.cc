@@ -9,8 +9,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kBeside = 2;         // edgels of a chain beside the one that a sample finds
-constexpr double kLookupPx = 4.0;  // as the detectors'
+constexpr int kBeside = 2;  // edgels of a chain beside the one that a sample finds
 
 }  // namespace
 
@@ -68,7 +67,7 @@ EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int m
     out.maps[v].noise = map.noise;
     out.maps[v].blur = map.blur;
     const std::vector<int> kept = append_runs(map, keep, min_chain, &out.maps[v]);
-    build_lookup(&out.maps[v], kLookupPx);
+    build_lookup(&out.maps[v]);
     out.plane_normal[v].resize(3, kept.size());
     for (size_t k = 0; k < kept.size(); ++k)
       out.plane_normal[v].col(k) = world.plane_normal[v].col(kept[k]);

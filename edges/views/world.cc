@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "datasets/types/median.h"
-
+#include "datasets/types/parallel.h"
 #include "edges/views/lift.h"
 
 namespace sketchsplat {
@@ -107,6 +107,9 @@ EdgeWorld make_edge_world(std::vector<View> views, std::vector<EdgelMap> maps) {
   EdgeWorld world;
   world.views = std::move(views);
   world.maps = std::move(maps);
+  parallel_for(int(world.maps.size()), 1, [&](int v) {
+    if (world.maps[v].nearest.empty()) build_lookup(&world.maps[v]);
+  });
   std::vector<PixelBox> boxes;
   for (const EdgelMap& m : world.maps) boxes.push_back(box_of(m));
   const Eigen::Vector3d middle = meeting_point(world.views);

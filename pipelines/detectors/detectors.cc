@@ -13,8 +13,7 @@ class ImageDetector : public Detector {
  public:
   explicit ImageDetector(const DetectOptions& options) : options_(options) {}
   EdgelMap detect(const Scene&, const View& view) const override {
-    return undistort_edgels(detect_edges(read_picture(view), options_), view, options_.min_chain,
-                            options_.reach_px);
+    return undistort_edgels(detect_edges(read_picture(view), options_), view, options_.min_chain);
   }
   bool takes_smaller_pictures() const override { return true; }
 
@@ -34,8 +33,7 @@ class MapDetector : public Detector {
     if (map.width != view.camera.width || map.height != view.camera.height)
       throw InputError(path, "a map of the image's size",
                        std::to_string(map.width) + " x " + std::to_string(map.height) + " px");
-    return undistort_edgels(detect_ridges(map, options_), view, options_.min_chain,
-                            options_.reach_px);
+    return undistort_edgels(detect_ridges(map, options_), view, options_.min_chain);
   }
 
  private:

@@ -115,6 +115,7 @@ class SurfelDetector : public Detector {
       GeometryMaps maps = render_geometry(field_, view, options_.surfels.mode_deg);
       maps.alpha = std::move(alpha_[i]);  // sharper than that of surfels
       shape_[i] = geometry_edges(maps, view.camera, options_.geometry);
+      build_lookup(&shape_[i]);
       maps_[i] = object_maps(maps, view.camera);
       stage.step();
     });
@@ -179,7 +180,7 @@ class SurfelDetector : public Detector {
         Picture picture = read_masked(scene.views[i]);
         View view = scene.views[i];
         maps[i] = undistort_edgels(detect_edges(picture, options_.detect), view,
-                                   options_.detect.min_chain, options_.detect.reach_px);
+                                   options_.detect.min_chain);
         picture = undistort_picture(std::move(picture), view);  // surfels are seen by pinholes
         view.lens = Lens();
         views[i] = make_training_view(view, picture, options_.surfels.side_px);
@@ -234,11 +235,10 @@ EdgelMap snap_edgels(const EdgelMap& geometry, const EdgelMap& picture,
     else if (kinds[i] == EdgeKind::kPrint && !picture.edgels[i].outline)
       keep[i] = false;
   append_runs(picture, keep, kMinChain, &out);
-  build_lookup(&out, std::max(4.0, reach_px));
+  build_lookup(&out, std::max(kLookupPx, reach_px));
   std::vector<char> alone = beside(geometry, out, reach_px, false);
   for (char& a : alone) a = !a;
   append_runs(geometry, alone, kMinChain, &out);
-  build_lookup(&out, 4.0);
   return out;
 }
 

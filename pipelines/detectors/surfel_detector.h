@@ -18,7 +18,7 @@ std::unique_ptr<Detector> make_surfel_detector(const DetectionOptions& options);
 /// Edgels of the picture that lie on edges of the shape: those that are known to (`kinds`, one per
 /// edgel of the picture, or none), and of the unknown ones those that run along an edgel of the
 /// geometry within `reach_px`, or all if the colours are `even`, so that little can be print. And
-/// those of the geometry that no such edgel is near to.
+/// those of the geometry, which has a look-up, that no such edgel is near to.
 EdgelMap snap_edgels(const EdgelMap& geometry, const EdgelMap& picture,
                      const std::vector<EdgeKind>& kinds, bool even, double reach_px);
 

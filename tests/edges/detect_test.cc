@@ -128,7 +128,8 @@ TEST(Detect, EmptyFlatAndTransparentPicturesGiveNoEdgels) {
 }
 
 TEST(Detect, LookupAgreesWithTheObviousSearch) {
-  const EdgelMap map = detect_edges(step_picture(25, 0.3, 0.7), {});
+  EdgelMap map = detect_edges(step_picture(25, 0.3, 0.7), {});
+  build_lookup(&map);
   for (int y = 0; y < 64; y += 2)
     for (int x = 0; x < 64; ++x) {
       double best = 1e9;

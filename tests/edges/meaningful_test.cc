@@ -183,7 +183,8 @@ TEST(Meaningful, AnEmptyMapStaysEmpty) {
 TEST(Lookup, FarPixelsKnowHowFarTheNearestEdgelIsAtLeast) {
   Picture p = grey_picture(120, 90, 0.5f);
   add_disk(&p, 40, 50, 12, 0.3);
-  const EdgelMap map = detect_edges(p, {});
+  EdgelMap map = detect_edges(p, {});
+  build_lookup(&map);
   const auto is_free = [&](int x, int y) { return map.nearest_at(x, y) < 0; };
   for (int y = -30; y < 130; y += 7)
     for (int x = -30; x < 160; x += 7) {
