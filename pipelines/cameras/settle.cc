@@ -9,6 +9,7 @@
 #include "datasets/types/median.h"
 #include "edges/views/recast.h"
 #include "pipelines/cameras/bring_back.h"
+#include "pipelines/cameras/gauge.h"
 #include "pipelines/cameras/point_prior.h"
 #include "pipelines/survey/explained.h"
 
@@ -138,10 +139,9 @@ double refine_from(const StatedCameras& stated, CameraPrior prior,
   return settle(stated, prior, options, progress, posed);
 }
 
-}  // namespace
-
-double settle_cameras(const Posed& first, const StatedCameras& stated, const Misfit& off,
-                      const ReconstructOptions& options, Progress* progress, Posed* posed) {
+// From where the cameras are, or, if strokes explain little then, from where smaller pictures say.
+double settle_best(const Posed& first, const StatedCameras& stated, const Misfit& off,
+                   const ReconstructOptions& options, Progress* progress, Posed* posed) {
   CameraPrior prior = prior_of(off);
   const double after = refine_from(stated, prior, options, progress, posed);
   const double share = explained(posed->sketch, posed->world).share;
@@ -154,6 +154,29 @@ double settle_cameras(const Posed& first, const StatedCameras& stated, const Mis
   if (!(explained(other.sketch, other.world).share > share)) return after;
   *posed = std::move(other);
   return after_other;
+}
+
+// Moves all to where the stated cameras are likeliest; points of structure from motion hold it.
+void hold_gauge(const StatedCameras& stated, Posed* posed) {
+  if (posed->sketch.size() == 0 || !stated.points.empty()) return;
+  const Observation o = look(*posed, kCameraReachPx);
+  if (o.matches.matches.empty()) return;
+  const Eigen::Vector3d middle = o.samples.position.rowwise().mean();
+  std::vector<View> views = posed->world.views;
+  const Similarity to =
+      likeliest_gauge(views, stated.views, middle, image_radii(o, posed->world, middle));
+  for (View& v : views) v = moved(std::move(v), to);
+  posed->world = refreshed(recast(std::move(posed->world), std::move(views)));
+  posed->sketch = moved(posed->sketch, to);
+}
+
+}  // namespace
+
+double settle_cameras(const Posed& first, const StatedCameras& stated, const Misfit& off,
+                      const ReconstructOptions& options, Progress* progress, Posed* posed) {
+  const double after = settle_best(first, stated, off, options, progress, posed);
+  hold_gauge(stated, posed);
+  return after;
 }
 
 double scale_sigma(const Posed& posed, const StatedCameras& stated, const Misfit& off) {

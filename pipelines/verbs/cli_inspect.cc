@@ -16,6 +16,7 @@
 #include "pipelines/base/atomic_file.h"
 #include "pipelines/base/sketch_input.h"
 #include "pipelines/base/version.h"
+#include "pipelines/cameras/gauge.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/pages/overlay.h"
 #include "pipelines/results/inspection_outputs.h"
@@ -82,14 +83,6 @@ Scene scene_of(const std::string& given, const SketchOrigin& origin, Progress* p
   }
 }
 
-// The camera, in the frame where `to` puts what it saw.
-View moved_view(View view, const Similarity& to) {
-  Pose& pose = view.cam_from_world;
-  pose.rotation = (pose.rotation * to.rotation.transpose()).eval();
-  pose.translation = to.scale * pose.translation - pose.rotation * to.translation;
-  return view;
-}
-
 // `world_scale`: units per world unit; `to_mm`: millimetres of a unit.
 Visibility visibility_of(const NominalFile& file, const Scene& scene, double world_scale,
                          double to_mm) {
@@ -98,7 +91,7 @@ Visibility visibility_of(const NominalFile& file, const Scene& scene, double wor
                                              const std::vector<std::vector<EdgePlace>>& places) {
     std::vector<View> views;
     const Similarity to = Similarity{to_mm} * pose * Similarity{world_scale};
-    for (const View& v : scene.views) views.push_back(moved_view(v, to));
+    for (const View& v : scene.views) views.push_back(moved(v, to));
     size_t total = 0;
     for (const auto& edge : places) total += edge.size();
     Eigen::Matrix3Xd points(3, total);
