@@ -2,6 +2,7 @@
 #include "pipelines/cameras/gauge.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -14,9 +15,10 @@ using Eigen::Vector3d;
 using Gauge = Eigen::Matrix<double, 7, 1>;  // shift, turn and growth about the middle
 using Rows = Eigen::Matrix<double, 3, 7>;
 
-constexpr int kFewestViews = 6;
-constexpr double kFreedom = 5;     // of Student's distribution
-constexpr double kLeastPx = 0.02;  // poses err at least by this
+constexpr int kFewestViews = 6, kFewestPoints = 20;
+constexpr double kLeastParallax = 1e-6;  // of lines of sight that meet: squared sine, about
+constexpr double kFreedom = 5;           // of Student's distribution
+constexpr double kLeastPx = 0.02;        // poses err at least by this
 constexpr int kRounds = 3, kSteps = 20;
 
 // How far a stated pose is off [px], and what of this a small gauge makes.
@@ -147,6 +149,94 @@ Similarity likeliest_gauge(const std::vector<View>& found, const std::vector<Vie
     }
     if (int(errors.size()) < kFewestViews) return out;
     out = about(out * middle, likeliest(errors)) * out;
+  }
+  return out;
+}
+
+namespace {
+
+// A point as stated and as cameras see it, and how well these tell where [1/px^2].
+struct PlacedPoint {
+  Vector3d stated, found;
+  Matrix3d information;
+};
+
+// The place nearest to the lines of sight; false if these do not tell one.
+bool place(const std::vector<View>& views, const ScenePoint& point, PlacedPoint* out) {
+  out->stated = out->found = point.position;
+  for (int round = 0; round < kRounds; ++round) {
+    Matrix3d across = Matrix3d::Zero();
+    Vector3d sum = Vector3d::Zero();
+    for (const PointSight& sight : point.sights) {
+      const View& v = views[sight.view];
+      const double depth = (v.cam_from_world * out->found).z();
+      Eigen::Vector2d ideal;
+      if (!(depth > 0) || !v.ideal_pixel(sight.pixel, &ideal)) continue;
+      const Vector3d way =
+          (v.cam_from_world.rotation.transpose() * v.camera.ray(ideal)).normalized();
+      const double px = v.camera.fx / depth;
+      const Matrix3d part = px * px * (Matrix3d::Identity() - way * way.transpose());
+      across += part, sum += part * v.center_in_world();
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(across);
+    if (!(parts.eigenvalues()[0] > kLeastParallax * parts.eigenvalues()[2])) return false;
+    out->found = across.ldlt().solve(sum);
+    out->information = across;
+  }
+  return out->found.allFinite();
+}
+
+// Of points, about their middle.
+Gauge likeliest(const std::vector<PlacedPoint>& points, const Vector3d& middle) {
+  std::vector<double> weight(points.size(), 1);
+  Gauge gauge = Gauge::Zero();
+  for (int step = 0; step < kSteps; ++step) {
+    Eigen::Matrix<double, 7, 7> normal = Eigen::Matrix<double, 7, 7>::Zero();
+    Gauge right = Gauge::Zero();
+    std::vector<Rows> by(points.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+      const PlacedPoint& p = points[i];
+      const Vector3d arm = p.found - middle;
+      by[i].leftCols<3>().setIdentity();
+      for (int k = 0; k < 3; ++k) by[i].col(3 + k) = Vector3d::Unit(k).cross(arm);
+      by[i].col(6) = arm;
+      const Eigen::Matrix<double, 7, 3> back = weight[i] * by[i].transpose() * p.information;
+      normal += back * by[i];
+      right += back * (p.stated - p.found);
+    }
+    gauge = normal.ldlt().solve(right);
+    double sum = 0;
+    std::vector<double> square;
+    for (size_t i = 0; i < points.size(); ++i) {
+      const Vector3d left = points[i].stated - points[i].found - by[i] * gauge;
+      square.push_back(left.dot(points[i].information * left));
+      sum += weight[i] * square[i];
+    }
+    const double variance = std::max(kLeastPx * kLeastPx, sum / (3 * double(points.size())));
+    for (size_t i = 0; i < points.size(); ++i)
+      weight[i] = (kFreedom + 3) / (kFreedom + square[i] / variance);
+  }
+  return gauge;
+}
+
+}  // namespace
+
+Similarity gauge_of_points(const std::vector<View>& found, const std::vector<ScenePoint>& points) {
+  Similarity out;
+  std::vector<PlacedPoint> placed;
+  Vector3d middle = Vector3d::Zero();
+  for (const ScenePoint& point : points) {
+    PlacedPoint p;
+    if (!place(found, point, &p)) continue;
+    placed.push_back(p);
+    middle += p.stated;
+  }
+  if (int(placed.size()) < kFewestPoints) return out;
+  middle /= double(placed.size());
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<PlacedPoint> now = placed;
+    for (PlacedPoint& p : now) p.found = out * p.found;
+    out = about(middle, likeliest(now, middle)) * out;
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "datasets/readers/scene.h"
 #include "datasets/types/view.h"
 #include "sketches/solve/similarity.h"
 
@@ -25,5 +26,11 @@ View moved(View view, const Similarity& to);
 /// too little: nothing moves.
 Similarity likeliest_gauge(const std::vector<View>& found, const std::vector<View>& stated,
                            const Eigen::Vector3d& middle, const std::vector<double>& radius_px);
+
+/// The similarity that brings the points of structure from motion, placed anew by the found
+/// cameras, to where they are stated: cameras and what they share err together, and what a wrong
+/// focal length moves is the cameras, not the points. As much as their sights (which index `found`)
+/// tell of each and with Student's distribution; fewer than twenty tell too little: nothing moves.
+Similarity gauge_of_points(const std::vector<View>& found, const std::vector<ScenePoint>& points);
 
 }  // namespace sketchsplat

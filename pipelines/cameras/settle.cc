@@ -156,15 +156,17 @@ double settle_best(const Posed& first, const StatedCameras& stated, const Misfit
   return after_other;
 }
 
-// Moves all to where the stated cameras are likeliest; points of structure from motion hold it.
+// Moves all to where the points of structure from motion say, or the stated cameras are likeliest.
 void hold_gauge(const StatedCameras& stated, Posed* posed) {
-  if (posed->sketch.size() == 0 || !stated.points.empty()) return;
+  if (posed->sketch.size() == 0) return;
   const Observation o = look(*posed, kCameraReachPx);
   if (o.matches.matches.empty()) return;
   const Eigen::Vector3d middle = o.samples.position.rowwise().mean();
   std::vector<View> views = posed->world.views;
   const Similarity to =
-      likeliest_gauge(views, stated.views, middle, image_radii(o, posed->world, middle));
+      stated.points.empty()
+          ? likeliest_gauge(views, stated.views, middle, image_radii(o, posed->world, middle))
+          : gauge_of_points(views, stated.points);
   for (View& v : views) v = moved(std::move(v), to);
   posed->world = refreshed(recast(std::move(posed->world), std::move(views)));
   posed->sketch = moved(posed->sketch, to);

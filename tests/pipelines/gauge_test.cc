@@ -129,6 +129,26 @@ TEST(Gauge, AViewWhoseTurnNobodyKnowsCountsForLittle) {
   EXPECT_GT((without * kMiddle - kMiddle).norm() * px, 0.1) << "what is looked for";
 }
 
+TEST(Gauge, PointsBringBackWhatOtherCamerasShowThoughSomeAreWrong) {
+  const std::vector<View> truth = cameras(12);
+  std::vector<ScenePoint> points;
+  for (int i = 0; i < 60; ++i) {
+    ScenePoint point;
+    point.position = kMiddle + Vector3d(std::sin(1.7 * i), std::cos(2.9 * i), std::sin(0.8 * i));
+    for (int v = i % 3; v < 12; v += 3) {
+      double depth;
+      point.sights.push_back({v, truth[v].project(point.position, &depth)});
+    }
+    if (i % 8 == 0) point.position += Vector3d(0.2, -0.1, 0.3);
+    points.push_back(point);
+  }
+  const Similarity to = gauge_of_points(moved(truth, kAway), points);
+  for (const Vector3d& p : {kMiddle, Vector3d(kMiddle + Vector3d(0.5, -0.3, 0.2))})
+    EXPECT_LT((to * (kAway * p) - p).norm(), 2e-4);
+  points.resize(10);
+  EXPECT_EQ(gauge_of_points(moved(truth, kAway), points).scale, 1);
+}
+
 TEST(Gauge, FewViewsMoveNothing) {
   const std::vector<View> truth = cameras(5);
   const Similarity none = likeliest_gauge(moved(truth, kAway), truth, kMiddle, radii(truth));
