@@ -33,7 +33,7 @@ void set_environment(char** argv) {
   set_unless_set("GLIBC_TUNABLES",
                  "glibc.cpu.hwcaps=-AVX,-AVX2,-FMA,-FMA4,-AVX_Usable,-AVX2_Usable,-FMA_Usable,"
                  "-FMA4_Usable:glibc.malloc.mmap_threshold=33554432:"  // 32 MB, the most it takes
-                 "glibc.malloc.trim_threshold=268435456");
+                 "glibc.malloc.trim_threshold=67108864");
   ::execv(program, argv);  // comes back if it cannot
 }
 
