@@ -9,6 +9,7 @@
 
 #include "datasets/readers/scene.h"
 #include "datasets/types/errors.h"
+#include "datasets/types/median.h"
 #include "pipelines/cameras/camera_unknowns.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/house.h"
@@ -67,6 +68,23 @@ double shape_error(const Sketch& found) {
   for (int i = 0; i < from.cols(); ++i)
     worst = std::max(worst, distance_to(truth, (T * from.col(i).homogeneous()).hnormalized()));
   return worst;
+}
+
+// Median distance [px of the first view] of what was found from what is true, where it lies.
+double place_error_px(const Sketch& found, const std::vector<View>& views) {
+  std::vector<double> off;
+  for (int s = 0; s < found.size(); ++s)
+    for (int i = 0; i <= 10; ++i)
+      off.push_back(distance_to(house(), point_at(found, s, 0.1 + 0.08 * i)));
+  return median(off) * views[0].camera.fx / (views[0].cam_from_world * kHouseMiddle).z();
+}
+
+TEST(RefinePoses, CamerasThatTurnedAboutThemselvesLeaveThePartWhereTheirCentresSay) {
+  const std::vector<View> truth = ring_of_views(20, kHouseMiddle, 3);
+  RunReport report;
+  const PosedStrokes out = posed(jogged(truth, 2), truth, &report);
+  ASSERT_TRUE(out.refined);
+  EXPECT_LT(place_error_px(out.sketch, truth), 0.2);
 }
 
 TEST(CameraUnknowns, DerivativesAreThoseOfDifferences) {
