@@ -6,15 +6,10 @@
 #include <vector>
 
 #include "datasets/io/image_io.h"
+#include "datasets/types/triangulate.h"
 #include "datasets/types/view.h"
 
 namespace sketchsplat {
-
-/// Where a view shows a point.
-struct PointSight {
-  int view = 0;           ///< index into Scene::views
-  Eigen::Vector2d pixel;  ///< in the image, where the lens draws it; NaN if nobody says
-};
 
 /// A point that structure from motion found.
 struct ScenePoint {
@@ -25,8 +20,8 @@ struct ScenePoint {
 /// A folder of calibrated images, whatever its format.
 struct Scene {
   std::string folder;
-  std::string format;       ///< "abc-nef", "nerf", ...
-  std::vector<View> views;  ///< frames that can be used, in the order of the scene file
+  std::string format;              ///< "abc-nef", "nerf", ...
+  std::vector<View> views;         ///< frames that can be used, in the order of the scene file
   std::vector<ScenePoint> points;  ///< empty if the format has none, or the file is missing
   Eigen::Matrix4d gt_from_world = Eigen::Matrix4d::Identity();  ///< `worldtogt` of EMAP's layout
   std::vector<std::string> warnings;  ///< one line per frame that was left out, and why

@@ -161,33 +161,16 @@ struct PlacedPoint {
   Matrix3d information;
 };
 
-// The place nearest to the lines of sight; false if these do not tell one.
+// False if the views do not tell one.
 bool place(const std::vector<View>& views, const ScenePoint& point, PlacedPoint* out) {
   out->stated = out->found = point.position;
-  for (int round = 0; round < kRounds; ++round) {
-    Matrix3d across = Matrix3d::Zero();
-    Vector3d sum = Vector3d::Zero();
-    for (const PointSight& sight : point.sights) {
-      const View& v = views[sight.view];
-      const double depth = (v.cam_from_world * out->found).z();
-      Eigen::Vector2d ideal;
-      if (!(depth > 0) || !v.ideal_pixel(sight.pixel, &ideal)) continue;
-      const Vector3d way =
-          (v.cam_from_world.rotation.transpose() * v.camera.ray(ideal)).normalized();
-      const double px = v.camera.fx / depth;
-      const Matrix3d part = px * px * (Matrix3d::Identity() - way * way.transpose());
-      across += part, sum += part * v.center_in_world();
-    }
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(across);
-    if (!(parts.eigenvalues()[0] > kLeastParallax * parts.eigenvalues()[2])) return false;
-    out->found = across.ldlt().solve(sum);
-    out->information = across;
-  }
-  return out->found.allFinite();
+  if (!triangulate(views, point.sights, &out->found, &out->information)) return false;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(out->information);
+  return parts.eigenvalues()[0] > kLeastParallax * parts.eigenvalues()[2];
 }
 
-// Of points, about their middle.
-Gauge likeliest(const std::vector<PlacedPoint>& points, const Vector3d& middle) {
+// From where cameras see points to where they are stated, about their middle.
+Gauge gauge_between(const std::vector<PlacedPoint>& points, const Vector3d& middle) {
   std::vector<double> weight(points.size(), 1);
   Gauge gauge = Gauge::Zero();
   for (int step = 0; step < kSteps; ++step) {
@@ -236,7 +219,7 @@ Similarity gauge_of_points(const std::vector<View>& found, const std::vector<Sce
   for (int round = 0; round < kRounds; ++round) {
     std::vector<PlacedPoint> now = placed;
     for (PlacedPoint& p : now) p.found = out * p.found;
-    out = about(middle, likeliest(now, middle)) * out;
+    out = about(middle, gauge_between(now, middle)) * out;
   }
   return out;
 }

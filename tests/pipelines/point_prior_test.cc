@@ -157,14 +157,25 @@ double misfit_px(const std::vector<View>& views, const std::vector<ScenePoint>& 
   return std::sqrt(2 * cost(cameras, points, 1) / sights);
 }
 
+// Largest distance [px] of what was found from what is true.
+double place_error_px(const Sketch& found, const std::vector<Polyline>& truth,
+                      const std::vector<View>& views) {
+  double worst = 0;
+  for (int s = 0; s < found.size(); ++s)
+    for (int i = 0; i <= 10; ++i)
+      worst = std::max(worst, distance_to(truth, point_at(found, s, 0.1 + 0.08 * i)));
+  return worst * views[0].camera.fx / (views[0].cam_from_world * kMiddle).z();
+}
+
 // Cameras that err by two pixels, and pictures of a square, which alone would let them err on.
 TEST(PointPrior, PointsHoldCamerasThatAFewStrokesDoNot) {
   const std::vector<View> truth = ring_of_views(12, kMiddle, 3);
+  std::vector<Polyline> square = cube_edges({0.3, 0.3, 0.3}, 0.4);
+  square.resize(4);
   std::vector<EdgelMap> maps;
   Scene scene;
   for (int k = 0; k < int(truth.size()); ++k) {
-    const std::vector<Polyline> cube = cube_edges({0.3, 0.3, 0.3}, 0.4);
-    maps.push_back(ideal_edgels(truth[k], {cube[0], cube[1], cube[2], cube[3]}));
+    maps.push_back(ideal_edgels(truth[k], square));
     View stated = truth[k];
     stated.name = "view " + std::to_string(k);
     const Vector3d axis(std::cos(2.4 * k), std::sin(2.4 * k), 3 * std::sin(1.7 * k));
@@ -187,6 +198,7 @@ TEST(PointPrior, PointsHoldCamerasThatAFewStrokesDoNot) {
   EXPECT_LT(misfit_px(held.world.views, points), 0.15);
   EXPECT_GT(before, 0.8);
   EXPECT_GT(misfit_px(alone.world.views, points), 0.3);
+  EXPECT_LT(place_error_px(held.sketch, square, truth), 0.1) << "where the points are";
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/synthetic/photo/tie_points.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -48,7 +47,7 @@ std::vector<TiePoint> tie_points(const PhotoWorld& world, const PhotoShader& sha
       TiePoint point{at.cast<double>(), shader.albedo(at, hit.face), {}};
       for (int j = 0; j < int(views.size()); ++j) {
         const Vector3f other = views[j].center_in_world().cast<float>();
-        TiePoint::Sight sight{j, {}};
+        PointSight sight{j, {}};
         if (j != k && uniform(hash(seed, k * kPerView + i, j, 112)) < 1.0 / 3) continue;
         if (hit.facet_normal.dot((other - at).normalized()) < 0.2f) continue;
         if (draws(views[j], point.point, &sight.pixel) && !world.tracer.blocked(from, other))
@@ -63,34 +62,14 @@ std::vector<TiePoint> tie_points(const PhotoWorld& world, const PhotoShader& sha
 std::vector<TiePoint> triangulated(const std::vector<TiePoint>& points,
                                    const std::vector<View>& views) {
   std::vector<TiePoint> out;
-  for (TiePoint point : points) {
-    bool fine = true;
-    for (int step = 0; step < 5 && fine; ++step) {
-      Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-      Vector3d g = Vector3d::Zero();
-      for (const TiePoint::Sight& sight : point.sights) {
-        const View& view = views[sight.view];
-        const Vector3d in_cam = view.cam_from_world * point.point;
-        Vector2d ideal;
-        if (!(in_cam.z() > 0) || !view.ideal_pixel(sight.pixel, &ideal)) {
-          fine = false;
-          break;
-        }
-        const Eigen::Matrix<double, 2, 3> J =
-            view.camera.project_jacobian(in_cam) * view.cam_from_world.rotation;
-        H += J.transpose() * J;
-        g += J.transpose() * (view.camera.project(in_cam) - ideal);
-      }
-      if (fine) point.point -= H.ldlt().solve(g);
-    }
-    if (fine && point.point.allFinite()) out.push_back(point);
-  }
+  for (TiePoint point : points)
+    if (triangulate(views, point.sights, &point.point)) out.push_back(point);
   return out;
 }
 
 double reprojection_error(const TiePoint& point, const std::vector<View>& views) {
   double sum = 0;
-  for (const TiePoint::Sight& sight : point.sights) {
+  for (const PointSight& sight : point.sights) {
     double depth;
     Vector2d pixel;
     const View& view = views[sight.view];

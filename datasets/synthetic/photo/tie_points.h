@@ -6,19 +6,16 @@
 #include <vector>
 
 #include "datasets/synthetic/photo/photo_light.h"
+#include "datasets/types/triangulate.h"
 #include "datasets/types/view.h"
 
 namespace sketchsplat {
 
 /// A point of a surface and where pictures show it, as structure from motion would match it.
 struct TiePoint {
-  Eigen::Vector3d point;  ///< in the frame of the views
-  Color color;            ///< share of the light that is sent back
-  struct Sight {
-    int view;
-    Eigen::Vector2d pixel;  ///< of the image; centres are integers
-  };
-  std::vector<Sight> sights;  ///< three or more, in the order of the views
+  Eigen::Vector3d point;           ///< in the frame of the views
+  Color color;                     ///< share of the light that is sent back
+  std::vector<PointSight> sights;  ///< three or more, in the order of the views
 };
 
 /// About a hundred points a view, evenly over its pixels, of what three or more views show well,

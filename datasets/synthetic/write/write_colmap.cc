@@ -25,7 +25,7 @@ std::vector<std::string> sights_of(const std::vector<View>& views,
                                    const std::vector<TiePoint>& points) {
   std::vector<std::string> sights(views.size());
   for (size_t i = 0; i < points.size(); ++i)
-    for (const TiePoint::Sight& sight : points[i].sights) {
+    for (const PointSight& sight : points[i].sights) {
       std::string& line = sights[sight.view];
       line += printed("%s%.3f %.3f %zu", line.empty() ? "" : " ", sight.pixel.x() + kCorner,
                       sight.pixel.y() + kCorner, i + 1);
@@ -43,7 +43,7 @@ std::string points_text(const std::vector<View>& views, const std::vector<TiePoi
       rgb[c] = int(255 * std::pow(std::clamp(point.color[c], 0.0f, 1.0f), 1 / 2.2f) + 0.5f);
     text += printed("%zu %.12g %.12g %.12g %d %d %d %.4f", i + 1, point.point.x(), point.point.y(),
                     point.point.z(), rgb[0], rgb[1], rgb[2], reprojection_error(point, views));
-    for (const TiePoint::Sight& sight : point.sights)
+    for (const PointSight& sight : point.sights)
       text += printed(" %d %d", sight.view + 1, used[sight.view]++);
     text += "\n";
   }
