@@ -22,7 +22,7 @@ void set_unless_set(const char* name, const char* value) {
 // - libm: exp and its kin have versions by what the CPU can do (FMA, AVX2), which differ in the
 //   last bit. Results shall be the same on every x86-64; this costs no time that can be measured.
 // - malloc: what held a picture goes back to the system at once by default, and its pages have to
-//   be cleared for the next one: a third of the time in which edges are detected.
+//   be cleared for the next one.
 void set_environment(char** argv) {
   constexpr char kMark[] = "SKETCHSPLAT_ENVIRONMENT";
   if (std::getenv(kMark)) return;
