@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "edges/image/hatching.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -97,7 +99,7 @@ double degrees_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 }
 
 std::vector<Place> places_of(const EdgelMap& map, int chain, const cv::Mat1b& outline,
-                             Neighbourhood* around) {
+                             const Hatching& hatching, Neighbourhood* around) {
   const int begin = map.chain[chain], end = map.chain[chain + 1];
   std::vector<int> own;
   for (int i = begin; i < end; ++i) {
@@ -122,8 +124,10 @@ std::vector<Place> places_of(const EdgelMap& map, int chain, const cv::Mat1b& ou
     const double before = degrees_between(at[k] - at[k - 1], at[k + 1] - at[k]);
     const double after = degrees_between(at[k + 1] - at[k], at[k + 2] - at[k + 1]);
     const double change = std::abs(std::remainder(after - before, 360));
+    const double random = std::clamp(change, kLeastTurn, kMostTurn) / kMostTurn;
+    const double hatched = hatching.chance(map.edgels[out[k].edgel]);
     out[k].turns = true;
-    out[k].turn = -std::log(std::clamp(change, kLeastTurn, kMostTurn) / kMostTurn);
+    out[k].turn = -std::log(hatched + (1 - hatched) * random);
   }
   return out;
 }
@@ -175,11 +179,12 @@ void cut(const std::vector<Place>& places, int last_edgel, double tests, double 
 void keep_meaningful(const cv::Mat1f& magnitude, const cv::Mat1b& outline,
                      const MeaningOptions& options, EdgelMap* map) {
   Neighbourhood around(magnitude, outline);
+  const Hatching hatching(*map, magnitude.size());
   const double tests = kPieces * std::max(1.0, double(map->edgels.size()) / kStep);
   const double least = options.most_false > 0 ? -std::log10(options.most_false) : -double(INFINITY);
   std::vector<Piece> pieces;
   for (int c = 0; c < map->num_chains(); ++c) {
-    const std::vector<Place> places = places_of(*map, c, outline, &around);
+    const std::vector<Place> places = places_of(*map, c, outline, hatching, &around);
     if (options.most_false > 0) {
       cut(places, map->chain[c + 1], tests, least, &pieces);
     } else {

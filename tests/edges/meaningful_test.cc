@@ -74,6 +74,33 @@ TEST(Meaningful, AnEdgeInSpecklesOfItsOwnContrastStaysAndTheSpecklesGo) {
   EXPECT_LE(kept.edgels.size() - on_step(kept), 0.05 * all.edgels.size());
 }
 
+// Grooves of a pitch [px] along rows, from row 20 to 220.
+void add_grooves(Picture* p, double pitch, double height) {
+  for (int y = 20; y < 220; ++y)
+    for (int x = 0; x < p->width(); ++x) add(p, x, y, height * std::sin(2 * M_PI * y / pitch));
+}
+
+TEST(Meaningful, LayersOfAPrintGoAndAnEdgeAcrossThemStays) {
+  for (const double pitch : {6.0, 7.0, 8.5}) {
+    Picture p = grey_picture(240, 240, 0.5f);
+    add_grooves(&p, pitch, 0.02);
+    add_step(&p, 0.15);
+    add_noise(&p, 2.0 / 255);
+    const EdgelMap all = detect_edges(p, everything()), kept = detect_edges(p, {});
+    ASSERT_GT(all.edgels.size() - on_step(all), 5000u);
+    EXPECT_GE(on_step(kept), 0.8 * 240 * 1.04) << pitch;
+    EXPECT_LE(kept.edgels.size() - on_step(kept), 0.05 * all.edgels.size()) << pitch;
+  }
+}
+
+TEST(Meaningful, FinsOfSixteenPixelsStay) {
+  Picture p = grey_picture(240, 240, 0.5f);
+  add_grooves(&p, 16, 0.1);
+  add_noise(&p, 2.0 / 255);
+  const EdgelMap kept = detect_edges(p, {});
+  EXPECT_GE(kept.edgels.size(), 0.95 * 240 * 2 * 200 / 16);
+}
+
 TEST(Meaningful, WhatNoiseMakesAtALowThresholdGoes) {
   Picture p = grey_picture(300, 300, 0.5f);
   add_noise(&p, 4.0 / 255);
