@@ -155,12 +155,25 @@ bool is_inside(const std::vector<Vector2d>& polygon, const Vector2d& p) {
   return !polygon.empty();
 }
 
-// Of the places, those of a group and of all groups that lie, step by step, nearer to it than a
-// gap; and at last those of groups around all that.
+// The group with the most places near the middle, and those with any among known ones.
+std::vector<char> groups_of_object(const std::vector<Vector2d>& places,
+                                   const std::vector<int>& group, int count, const Vector2d& middle,
+                                   double near, const std::vector<Vector2d>& known) {
+  std::vector<double> weight(count);
+  std::vector<char> own(count, 0);
+  const std::vector<Vector2d> among = convex_hull(known);
+  for (size_t i = 0; i < places.size(); ++i) {
+    weight[group[i]] += std::exp(-0.5 * (places[i] - middle).squaredNorm() / (near * near));
+    if (is_inside(among, places[i])) own[group[i]] = 1;
+  }
+  own[std::max_element(weight.begin(), weight.end()) - weight.begin()] = 1;
+  return own;
+}
+
+// Of the places, those of some groups and of all groups that lie, step by step, nearer to them than
+// a gap; and at last those of groups around all that.
 std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
-                            int start, double footprint, const RegionOptions& options) {
-  std::vector<char> own(1 + *std::max_element(group.begin(), group.end()), 0);
-  own[start] = 1;
+                            std::vector<char> own, double footprint, const RegionOptions& options) {
   std::vector<Vector2d> taken;
   for (bool more = true; more;) {
     more = false;
@@ -294,14 +307,12 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
     if (table->signedDistance(p) > options.above_px * footprint) places.push_back(region.frame * p);
   int count = 0;
   const std::vector<int> group = group_of(places, 0.5 * options.gap_px * footprint, &count);
-  std::vector<double> weight(count);
-  const double near = kNear * reach;
-  for (size_t i = 0; i < places.size(); ++i)
-    weight[group[i]] +=
-        std::exp(-0.5 * (places[i] - region.frame * middle).squaredNorm() / (near * near));
   if (count == 0) return region;
-  const int best = int(std::max_element(weight.begin(), weight.end()) - weight.begin());
-  const std::vector<Vector2d> own = grown(places, group, best, footprint, options);
+  std::vector<Vector2d> known;
+  for (const Vector3d& p : options.known) known.push_back(region.frame * p);
+  const std::vector<char> start =
+      groups_of_object(places, group, count, region.frame * middle, kNear * reach, known);
+  const std::vector<Vector2d> own = grown(places, group, start, footprint, options);
   region.table = table;
   region.above = highest_print(*table, points, footprint, options.above_px * footprint);
   region.outline = convex_hull(widened(own, options.reach_px * footprint));
@@ -309,7 +320,7 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   RegionOptions near_by = options;
   near_by.gap = 0;
   const std::vector<Vector2d> sure =
-      convex_hull(widened(grown(places, group, best, footprint, near_by), margin));
+      convex_hull(widened(grown(places, group, start, footprint, near_by), margin));
   std::vector<Vector3d> inside;
   for (const Vector3d& p : points) {
     const Vector2d place = region.frame * p;

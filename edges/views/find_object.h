@@ -21,6 +21,8 @@ struct RegionOptions {
   double reach_px = 20;   ///< [px] the same above it, where nothing else is near
   double least_share = 0.1;  ///< of the points that lie on a plane for it to be a table
   int seed = 0;              ///< of the planes that are tried
+  /// Edges of the object that an earlier look has told: what stands among them is part of it.
+  std::vector<Eigen::Vector3d> known;
 };
 
 /// Finds the object that the cameras look at among points on edges. The table is the plane with the

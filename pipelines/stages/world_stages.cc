@@ -20,6 +20,7 @@ constexpr double kCoarseSides = 6;  // of the picture: edgels among which the ob
 constexpr double kCoarser = 4;      // times the stride at which they are lifted
 constexpr int kCoarseViews = 16;    // that score their depths
 constexpr double kBeyond = 1.5;     // times what a view sees: bounds without masks
+constexpr double kAbout = 0.5;      // diagonals of the object's box that are looked at around it
 
 double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
   const double sides = options.detect.meaning.most_sides;
@@ -53,6 +54,19 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector
   return make_edge_world(std::move(views), std::move(maps));
 }
 
+namespace {
+
+// `points`: on edges, in a world without bounds of the object.
+ObjectRegion find_object_in(const EdgeWorld& coarse, const std::vector<EdgePoint>& points,
+                            const RegionOptions& look) {
+  std::vector<Eigen::Vector3d> cameras;
+  for (const View& v : coarse.views) cameras.push_back(v.center_in_world());
+  const double reach = 0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond;
+  return find_object(points, cameras, meeting_point(coarse.views), reach, coarse.footprint, look);
+}
+
+}  // namespace
+
 EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
                           Progress* progress) {
   if (!options.box.isEmpty()) {
@@ -66,15 +80,19 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, Ru
   LiftOptions lift = options.lift;
   lift.stride_px *= kCoarser;
   lift.sweep_views = std::min(lift.sweep_views, kCoarseViews);
-  const std::vector<EdgePoint> points = lift_edges(coarse, lift);
+  std::vector<EdgePoint> points = lift_edges(coarse, lift);
   RegionOptions look;
   look.min_views = lift.min_views;
   look.seed = options.seed;
-  std::vector<Eigen::Vector3d> cameras;
-  for (const View& v : world.views) cameras.push_back(v.center_in_world());
-  const ObjectRegion object =
-      find_object(points, cameras, meeting_point(world.views),
-                  0.5 * coarse.bounds.sizes().maxCoeff() / kBeyond, coarse.footprint, look);
+  ObjectRegion object = find_object_in(coarse, points, look);
+  if (object.table) {
+    // Most of these edges were of other things: those about the object alone tell more of it.
+    const ObjectRegion about = wider(object, kAbout * object.box.diagonal().norm());
+    const std::vector<EdgePoint> more = lift_edges(focused(world, about, kCoarseSides), lift);
+    points.insert(points.end(), more.begin(), more.end());
+    look.known = object.edges;
+    object = find_object_in(coarse, points, look);
+  }
   stage.result(object.table ? "on a table" : "no table");
   return focused(std::move(world), object, options.detect.meaning.most_sides);
 }

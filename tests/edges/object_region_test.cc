@@ -197,6 +197,28 @@ TEST(ObjectRegion, OnlyWhatHangsTogetherIsSurelyTheObjects) {
   for (const Vector3d& p : r.edges) EXPECT_LT(p.x(), beside) << p.transpose();
 }
 
+// Four posts about a hub, too far from it and each other to hang together.
+TEST(ObjectRegion, WhatStandsAmongEdgesKnownBeforeBelongsToTheObject) {
+  const double hub = 60 * kPixel, away = 0.4;
+  std::vector<EdgePoint> points = cloth_around(0.6);
+  add_ring(hub, 0.3, &points);
+  RegionOptions look;
+  std::vector<Vector3d> posts;
+  for (int k = 0; k < 4; ++k) {
+    const Vector3d foot(0.5 + (k & 1 ? away : -away), 0.5 + (k & 2 ? away : -away), 0.1);
+    for (const Polyline& e : cube_edges(foot, 0.04)) add_segment(e[0], e[1], 12, &points);
+    posts.push_back(foot + Vector3d::Constant(0.02));
+    look.known.push_back(foot), look.known.push_back(foot + Vector3d(0.04, 0.04, 0));
+  }
+  const ObjectRegion first = find_object(points, cameras(), kMiddle, 1.2, kPixel, {});
+  const ObjectRegion again = find_object(points, cameras(), kMiddle, 1.2, kPixel, look);
+  ASSERT_TRUE(first.table && again.table);
+  for (const Vector3d& x : posts) {
+    EXPECT_FALSE(first.contains(x)) << "else this tests nothing";
+    EXPECT_TRUE(again.contains(x)) << x.transpose();
+  }
+}
+
 TEST(ObjectRegion, OfNothingNothingIsKnown) {
   EXPECT_TRUE(find_object({}, cameras(), kMiddle, 1, kPixel, {}).contains({9, 9, 9}));
   EXPECT_TRUE(find_object(cube_on_a_table(), {}, kMiddle, 1, kPixel, {}).box.isEmpty());
