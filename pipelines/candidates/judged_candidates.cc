@@ -63,7 +63,9 @@ std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& wor
     if (c.group < 0) settle(levels, tolerance, &c);
     *first_pattern = std::max(*first_pattern, c.group + 1);
   }
-  const std::vector<LevelRing> rings = level_rings(levels, world, explained);
+  // Pictures that show more rings than the sketch has strokes, on the average, show texture.
+  const std::vector<LevelRing> rings =
+      level_rings(levels, world, explained, world.views.size() * size_t(sketch.size()));
   for (const std::vector<Candidate>& more :
        {level_copies(sketch, levels), mirror_copies(sketch, levels),
         circle_patterns(sketch, tolerance), of_views(rings, ring_views)})

@@ -131,7 +131,7 @@ std::vector<LevelRing> agreed(const std::vector<Ring>& rings, const Vector3d& no
 }  // namespace
 
 std::vector<LevelRing> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
-                                   const EdgelFlags& explained) {
+                                   const EdgelFlags& explained, size_t most) {
   std::vector<std::vector<Chain>> chains;
   for (size_t v = 0; v < world.maps.size(); ++v)
     chains.push_back(free_chains(world.maps[v], explained[v]));
@@ -156,6 +156,7 @@ std::vector<LevelRing> level_rings(const std::vector<Levels>& levels, const Edge
   });
   std::vector<LevelRing> out;
   for (const std::vector<LevelRing>& f : found) out.insert(out.end(), f.begin(), f.end());
+  if (out.size() > most) out.clear();
   return out;
 }
 

@@ -16,8 +16,9 @@ struct LevelRing {
 
 /// Circles in the known levels: small holes, of which edgels are too few to match them without
 /// their plane. Of every direction in the eight levels that hold the most strokes; those of a level
-/// that most views agree on first. `explained`: edgels that tell of something else.
+/// that most views agree on first. `explained`: edgels that tell of something else. None if they
+/// are more than `most` in all: texture has rings, too, and views agree on speckles of paint.
 std::vector<LevelRing> level_rings(const std::vector<Levels>& levels, const EdgeWorld& world,
-                                   const EdgelFlags& explained);
+                                   const EdgelFlags& explained, size_t most);
 
 }  // namespace sketchsplat

@@ -86,7 +86,7 @@ TEST(Candidates, RingsAreWhereViewsAgreeInALevel) {
   const EdgeWorld more = test::ideal_world(views, {rim(seldom), rim(in_top), rim(below)});
   for (const size_t v : {size_t(0), size_t(1)}) world.maps[v] = more.maps[v];
   const std::vector<Levels> levels = find_levels(plate(), kTolerance);
-  std::vector<LevelRing> rings = level_rings({levels[0]}, world, no_edgels(world));
+  std::vector<LevelRing> rings = level_rings({levels[0]}, world, no_edgels(world), 100);
   ASSERT_GE(rings.size(), 2);
   const auto by_views = [](const LevelRing& a, const LevelRing& b) { return a.views > b.views; };
   std::stable_sort(rings.begin(), rings.end(), by_views);
@@ -101,7 +101,12 @@ TEST(Candidates, RingsAreWhereViewsAgreeInALevel) {
   EXPECT_EQ(std::count_if(rings.begin(), rings.end(), of_two), 1);
   EdgelFlags explained = no_edgels(world);
   for (std::vector<char>& view : explained) std::fill(view.begin(), view.end(), 1);
-  EXPECT_TRUE(level_rings({levels[0]}, world, explained).empty());
+  EXPECT_TRUE(level_rings({levels[0]}, world, explained, 100).empty());
+  const auto of_at_most = [&](size_t most) {
+    return level_rings({levels[0]}, world, no_edgels(world), most).size();
+  };
+  EXPECT_EQ(of_at_most(rings.size()), rings.size());
+  EXPECT_EQ(of_at_most(rings.size() - 1), 0u);
 }
 
 // As on a natural surface, where every stroke is a level of its own.
