@@ -91,7 +91,8 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, Ru
     const std::vector<EdgePoint> more = lift_edges(focused(world, about, kCoarseSides), lift);
     points.insert(points.end(), more.begin(), more.end());
     look.known = object.edges;
-    object = find_object_in(coarse, points, look);
+    const ObjectRegion again = find_object_in(coarse, points, look);
+    if (again.table) object = again;  // few of these may lie on it
   }
   stage.result(object.table ? "on a table" : "no table");
   return focused(std::move(world), object, options.detect.meaning.most_sides);
