@@ -26,6 +26,8 @@ constexpr int kAsides = 7;
 constexpr double kMostAsidePx = 30;         // [px] further, of closed ones
 constexpr int kNulls = 80, kMostNulls = 8;  // copies that tell a threshold; of one candidate
 constexpr int kMostCandidates = 8000;       // a sketch that leads to expect more tells nothing
+constexpr size_t kRingsPerStroke =
+    30;                           // at most 24 in plain pictures, of most speckles 33 and more
 constexpr double kKnownNats = 3;  // [nat] of one of a group that is known, as of a clear view
 
 // What candidates get where there is no edge: copies of each, moved aside in space, all in
@@ -63,9 +65,8 @@ std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& wor
     if (c.group < 0) settle(levels, tolerance, &c);
     *first_pattern = std::max(*first_pattern, c.group + 1);
   }
-  // Pictures that show more rings than the sketch has strokes, on the average, show texture.
   const std::vector<LevelRing> rings =
-      level_rings(levels, world, explained, world.views.size() * size_t(sketch.size()));
+      level_rings(levels, world, explained, kRingsPerStroke * size_t(sketch.size()));
   for (const std::vector<Candidate>& more :
        {level_copies(sketch, levels), mirror_copies(sketch, levels),
         circle_patterns(sketch, tolerance), of_views(rings, ring_views)})
