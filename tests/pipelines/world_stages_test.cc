@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The stages from images to points, in a world of perfect edgels; focus on an object among other
+// The stages from images to points, in a world of perfect edgels; how an object is told from other
 // things is tested where it is found (object_region_test).
 #include <gtest/gtest.h>
 
@@ -55,6 +55,55 @@ TEST(WorldStages, ABoxOfTheUserHoldsAllThatIsLifted) {
   for (const EdgePoint& p : points) EXPECT_TRUE(options.box.contains(p.position));
   ASSERT_FALSE(report.counts.empty());
   EXPECT_EQ(report.counts.back().second, double(points.size()));
+}
+
+// Curves, and how meaningful they are.
+struct Judged {
+  std::vector<Polyline> curves;
+  float meaning;
+};
+
+void add_square(double height, double half, Judged* to) {
+  const Vector3d a(0.5 - half, 0.5 - half, height), x(2 * half, 0, 0), y(0, 2 * half, 0);
+  for (const Polyline& side : {Polyline{a, a + x}, Polyline{a + x, a + x + y},
+                               Polyline{a + x + y, a + y}, Polyline{a + y, a}})
+    to->curves.push_back(side);
+}
+
+// Looked at from above.
+EdgeWorld on_a_table(const std::vector<Judged>& things) {
+  std::vector<View> views;
+  for (const View& v : ring_of_views(50, {0.5, 0.5, 0.1}, 3))
+    if (v.center_in_world().z() > 1.5) views.push_back(v);
+  std::vector<EdgelMap> maps;
+  for (const View& view : views) {
+    EdgelMap all;
+    all.chain.push_back(0);
+    for (const Judged& thing : things) {
+      EdgelMap one = ideal_edgels(view, thing.curves);
+      one.meaning.assign(one.num_chains(), thing.meaning);
+      all.width = one.width, all.height = one.height;
+      append_runs(one, std::vector<char>(one.edgels.size(), 1), 1, &all);
+    }
+    maps.push_back(all);
+  }
+  return make_edge_world(views, maps);
+}
+
+// In a first look clear print on the table hides all of the part but its hub.
+TEST(WorldStages, ASecondLookTellsHowFarAnObjectReaches) {
+  Judged hub{{}, 9}, print{{}, 5}, steps{{}, 1};
+  add_square(0.3, 0.08, &hub);
+  add_square(0.2, 0.08, &hub);
+  for (double x = -0.9; x < 2; x += 0.1)
+    if (std::abs(x - 0.5) > 0.8) print.curves.push_back({{x, -0.4, 0}, {x, 1.4, 0}});
+  for (const double half : {0.18, 0.27, 0.36}) add_square(0.2, half, &steps);
+  RunReport report;
+  const EdgeWorld near = focus_on_object(on_a_table({hub, print, steps}), {}, &report, nullptr);
+  ASSERT_TRUE(near.object.table);
+  for (const double x : {0.14, 0.86})
+    for (const double y : {0.14, 0.86}) EXPECT_TRUE(near.object.contains({x, y, 0.2})) << x << y;
+  EXPECT_FALSE(near.object.contains({1.3, 0.5, 0.2}));
 }
 
 // What other views show beside a corner that few see pulls at it.
