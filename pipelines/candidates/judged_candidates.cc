@@ -26,8 +26,7 @@ constexpr int kAsides = 7;
 constexpr double kMostAsidePx = 30;         // [px] further, of closed ones
 constexpr int kNulls = 80, kMostNulls = 8;  // copies that tell a threshold; of one candidate
 constexpr int kMostCandidates = 8000;       // a sketch that leads to expect more tells nothing
-constexpr size_t kRingsPerStroke =
-    30;                           // at most 24 in plain pictures, of most speckles 33 and more
+constexpr size_t kRingsPerStroke = 30;      // of more, most are of speckles
 constexpr double kKnownNats = 3;  // [nat] of one of a group that is known, as of a clear view
 
 // What candidates get where there is no edge: copies of each, moved aside in space, all in
