@@ -28,11 +28,12 @@ void find_strokes(const ReconstructOptions& options, Progress* progress, Posed* 
   posed->report = {};
   posed->round.clear();
   try {
-    posed->sketch = fit_strokes(lift_scene(posed->world, options, &posed->report, progress),
-                                posed->world, options, &posed->report, progress);
+    FirstStrokes first = fit_strokes(lift_scene(posed->world, options, &posed->report, progress),
+                                     posed->world, options, &posed->report, progress);
+    posed->sketch = std::move(first.sketch), posed->nats = first.nats;
     posed->round = rounds_among(posed->sketch, posed->world, select_options(options).round);
   } catch (const TooLittleError&) {
-    posed->sketch = {};
+    posed->sketch = {}, posed->nats = 0;
   }
 }
 

@@ -18,6 +18,7 @@ constexpr double kCameraReachPx = 2;
 struct Posed {
   EdgeWorld world;
   Sketch sketch = {};
+  double nats = 0;               ///< that the views say for the strokes, see FirstStrokes
   std::vector<char> round = {};  ///< per stroke: hardly an edge, and no witness of cameras
   RunReport report = {};         ///< of how the strokes were found, alone
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
+#include <random>
 #include <utility>
 
 #include "datasets/types/errors.h"
@@ -20,6 +22,7 @@ namespace {
 
 constexpr double kLowShare = 0.4;  // of the edgels: strokes that explain less may be accidents
 constexpr double kTimesChance = 2;
+constexpr double kFewEdgels = 0.01, kFewNats = 3;  // [of all, nat] of accidents, at least
 constexpr double kLeastShare = 0.1;   // of strokes by stated cameras that can be mended
 constexpr double kAstrayPx = 0.4;     // strokes by cameras that are right lie stiller in views
 constexpr double kStillPx = 0.25;     // edgels lie on strokes, by such cameras
@@ -37,36 +40,54 @@ StatedCameras stated_cameras(const EdgeWorld& world, const Scene& scene) {
   return {world.views, points_among(world.views, scene)};
 }
 
-// What strokes explain if every view looks somewhere else, each to another side.
-double chance_share(const EdgeWorld& world, const ReconstructOptions& options) {
-  std::vector<View> views = world.views;
+// What tells that strokes are no accidents: the share of the edgels that they explain, or, where
+// most are texture, what the views say for them [nat].
+struct Agreement {
+  double share, nats;
+};
+
+// Of strokes by cameras that are not these views'.
+Agreement accidents(const EdgeWorld& world, std::vector<View> views,
+                    const ReconstructOptions& options) {
+  Posed posed{recast(world, std::move(views))};
+  find_strokes(options, nullptr, &posed);
+  return {explained(posed.sketch, posed.world).share, posed.nats};
+}
+
+// Every view looks somewhere else, each to another side.
+std::vector<View> awry_views(std::vector<View> views) {
   for (size_t v = 0; v < views.size(); ++v) {
     const double golden = M_PI * (3 - std::sqrt(5.0)), by = kAwry * views[v].camera.width;
     views[v].camera.cx += by * std::cos(golden * double(v));
     views[v].camera.cy += by * std::sin(golden * double(v));
   }
-  Posed awry{recast(world, std::move(views))};
-  find_strokes(options, nullptr, &awry);
-  return explained(awry.sketch, awry.world).share;
+  return views;
 }
 
-// Of what strokes explain now, and explained of the cameras as stated: cameras that had to move
-// must have shown something before, or show much now, for some cameras fit any few edges.
-void check_agreement(const Posed& posed, double share, bool moved, double as_stated,
-                     const ReconstructOptions& options) {
+// Every view stands where another one does.
+std::vector<View> shuffled_views(const std::vector<View>& views) {
+  std::vector<size_t> from(views.size());
+  std::iota(from.begin(), from.end(), 0);
+  std::mt19937 random(1);
+  for (size_t v = from.size(); v-- > 1;) std::swap(from[v], from[random() % v]);
+  std::vector<View> out = views;
+  for (size_t v = 0; v < views.size(); ++v) out[v].cam_from_world = views[from[v]].cam_from_world;
+  return out;
+}
+
+// That strokes are more than accidents, which are few as well.
+void check_agreement(const Posed& posed, double share, const ReconstructOptions& options) {
   if (!(share < kLowShare) || stands_among_things(posed.world)) return;
+  const Agreement awry = accidents(posed.world, awry_views(posed.world.views), options);
+  const Agreement shuffled = accidents(posed.world, shuffled_views(posed.world.views), options);
+  const double by_accident = std::max(awry.share, shuffled.share);
+  if (share > std::max(kTimesChance * by_accident, kFewEdgels) ||
+      posed.nats > std::max(kTimesChance * std::max(awry.nats, shuffled.nats), kFewNats))
+    return;
   char found[120];
-  if (moved && as_stated < kLeastShare) {
-    std::snprintf(found, sizeof found,
-                  "%.1f %% of the edges of the images, %.1f %% if cameras move", 100 * as_stated,
-                  100 * share);
-  } else {
-    const double chance = chance_share(posed.world, options);
-    if (share > kTimesChance * chance) return;
-    std::snprintf(found, sizeof found,
-                  "%.1f %% of the edges of the images, as many as by accident (%.1f %%)",
-                  100 * share, 100 * chance);
-  }
+  std::snprintf(found, sizeof found,
+                "%.1f %% of the edges of the images, hardly more than by accident (%.1f %%)",
+                100 * share, 100 * by_accident);
   const bool few = int(posed.world.views.size()) < kEnoughViews;
   throw TooLittleError("expected poses and images that agree, found curves for " +
                        std::string(found) + ": " + (few ? "there are too few views, or " : "") +
@@ -118,17 +139,23 @@ double still_share(const Posed& posed) {
   return explained(fit.sketch, posed.world, kStillPx).share;
 }
 
+// Some cameras fit any few edges: those that had to move must have shown something before, or show
+// much now.
+bool proves_cameras(const Posed& before, const Posed& after) {
+  return explained(before.sketch, before.world).share >= kLeastShare ||
+         explained(after.sketch, after.world).share >= kLowShare;
+}
+
 // Cameras that fit, where these ones do not and others explain more; true if they moved.
 bool move_cameras(const StatedCameras& stated, const Misfit& off, const ReconstructOptions& options,
                   RunReport* report, Progress* progress, Posed* posed) {
   const Posed first = *posed;
   Stage stage("poses", 0, report, progress);
   const double after = settle_cameras(first, stated, off, options, progress, posed);
-  const double least = (stands_among_things(posed->world) ? 1
-                        : off.confirmed()                 ? kNoWorse
-                                                          : kMuchBetter) *
-                       still_share(first);
-  const bool moved = options.refine_poses == "on" || still_share(*posed) > least;
+  const bool things = stands_among_things(posed->world);
+  const double least = (things ? 1 : off.confirmed() ? kNoWorse : kMuchBetter) * still_share(first);
+  const bool better = still_share(*posed) > least && (things || proves_cameras(first, *posed));
+  const bool moved = options.refine_poses == "on" || better;
   if (!moved) *posed = first;
   report->counts.push_back({"pose_offset_before_px", off.offset_px});
   report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
@@ -148,9 +175,8 @@ PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const Reconstruct
   const bool able = options.refine_poses != "off" && posed.world.views.size() >= kFewestViews &&
                     options.detector != "2dgs-sn";
   const Misfit off = able ? check_cameras(posed, stated, shares.share, report, progress) : Misfit{};
-  const double as_stated = shares.share;
-  const bool astray =
-      (as_stated < kLeastShare || off.offset_px > kAstrayPx) && !stands_among_things(posed.world);
+  const bool astray = (shares.share < kLeastShare || off.offset_px > kAstrayPx) &&
+                      !stands_among_things(posed.world);
   // The cameras of structure from motion err; among things few strokes are left to confirm it.
   const bool doubtful =
       stands_among_things(posed.world) && points_off_px(stated.views, stated.points) > kPointsOffPx;
@@ -164,7 +190,7 @@ PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const Reconstruct
     find_strokes(options, progress, &posed);
     shares = explained(posed.sketch, posed.world);
   }
-  check_agreement(posed, shares.share, moved, as_stated, options);
+  check_agreement(posed, shares.share, options);
   append(posed.report, report);
   if (posed.sketch.size() == 0)
     throw TooLittleError("expected edges that several views see, found none that agree");

@@ -115,8 +115,8 @@ SelectOptions select_options(const ReconstructOptions& options) {
   return select;
 }
 
-Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
-                   const ReconstructOptions& options, RunReport* report, Progress* progress) {
+FirstStrokes fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
+                         const ReconstructOptions& options, RunReport* report, Progress* progress) {
   Stage stage("fit", 0, report, progress);
   const Sketch first =
       polish(initial_sketch(points, world.footprint, options), world, early(options));
@@ -128,7 +128,10 @@ Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
   report->counts.push_back({"strokes_lifted", double(first.size())});
   stage.result(std::to_string(chosen.size()) + " of " + std::to_string(first.size()) +
                " strokes stand");
-  return rewritten(grown(chosen, world, options), world, options).sketch;
+  double nats = 0;
+  for (int i = 0; i < first.size(); ++i)
+    if (selection.remap.stroke[i] >= 0) nats += selection.nats[i];
+  return {rewritten(grown(chosen, world, options), world, options).sketch, nats};
 }
 
 Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,

@@ -46,10 +46,15 @@ SelectOptions select_options(const ReconstructOptions& options);
 /// with the joints that polishing keeps smooth, ten times smoother.
 RegularizeOptions regularize_options(const ReconstructOptions& options);
 
+struct FirstStrokes {
+  Sketch sketch;
+  double nats = 0;  ///< sum of the likelihood ratios [nat] by which they were chosen (select.h)
+};
+
 /// Strokes from lifted points: linked to chains, cut into the simplest curves, moved onto the
 /// edgels, chosen by what they explain, and as long as the views see them.
-Sketch fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
-                   const ReconstructOptions& options, RunReport* report, Progress* progress);
+FirstStrokes fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
+                         const ReconstructOptions& options, RunReport* report, Progress* progress);
 
 /// The sketch without strokes of which the detector knows that most of what it knows about lies on
 /// a smooth surface: print (Detector::judge).
