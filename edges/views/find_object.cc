@@ -6,10 +6,11 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "datasets/types/median.h"
+#include "edges/views/cell_groups.h"
+#include "edges/views/convex_hull.h"
 
 namespace sketchsplat {
 namespace {
@@ -94,65 +95,10 @@ std::optional<Plane> find_table(const std::vector<Vector3d>& all,
   return best;
 }
 
-// Groups of places in a plane: what lies in cells that touch is one. Group of each place.
-std::vector<int> group_of(const std::vector<Vector2d>& places, double cell, int* count) {
-  std::map<std::pair<int, int>, int> group;  // of a cell
-  const auto cell_of = [cell](const Vector2d& p) {
-    return std::pair(int(std::floor(p.x() / cell)), int(std::floor(p.y() / cell)));
-  };
-  for (const Vector2d& p : places) group[cell_of(p)] = -1;
-  *count = 0;
-  for (auto& [start, g] : group) {
-    if (g >= 0) continue;
-    g = (*count)++;
-    std::vector<std::pair<int, int>> open = {start};
-    while (!open.empty()) {
-      const auto [x, y] = open.back();
-      open.pop_back();
-      for (int dx = -1; dx <= 1; ++dx)
-        for (int dy = -1; dy <= 1; ++dy) {
-          const auto next = group.find({x + dx, y + dy});
-          if (next == group.end() || next->second >= 0) continue;
-          next->second = group[start];
-          open.push_back(next->first);
-        }
-    }
-  }
-  std::vector<int> out;
-  for (const Vector2d& p : places) out.push_back(group[cell_of(p)]);
+std::vector<Vector3d> in_space(const std::vector<Vector2d>& places) {
+  std::vector<Vector3d> out;
+  for (const Vector2d& p : places) out.emplace_back(p.x(), p.y(), 0);
   return out;
-}
-
-double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
-  return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
-}
-
-// Counter-clockwise.
-std::vector<Vector2d> convex_hull(const std::vector<Vector2d>& places) {
-  if (places.empty()) return {};
-  std::vector<cv::Point2f> points;  // about the first: floats are fine enough then
-  for (const Vector2d& p : places)
-    points.emplace_back(float(p.x() - places[0].x()), float(p.y() - places[0].y()));
-  std::vector<int> hull;
-  cv::convexHull(points, hull, false, false);
-  std::vector<Vector2d> out;
-  for (const int k : hull) out.push_back(places[k]);
-  return out;
-}
-
-// Corners of squares around all places: the hull of them is wider by the margin.
-std::vector<Vector2d> widened(const std::vector<Vector2d>& places, double margin) {
-  std::vector<Vector2d> out;
-  for (const Vector2d& p : places)
-    for (int k = 0; k < 4; ++k)
-      out.push_back(p + margin * Vector2d(k & 1 ? 1 : -1, k & 2 ? 1 : -1));
-  return out;
-}
-
-bool is_inside(const std::vector<Vector2d>& polygon, const Vector2d& p) {
-  for (size_t i = 0; i < polygon.size(); ++i)
-    if (cross(polygon[i], polygon[(i + 1) % polygon.size()], p) < 0) return false;
-  return !polygon.empty();
 }
 
 // The group with the most places near the middle, and those with any among known ones.
@@ -306,7 +252,8 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
   for (const Vector3d& p : points)
     if (table->signedDistance(p) > options.above_px * footprint) places.push_back(region.frame * p);
   int count = 0;
-  const std::vector<int> group = group_of(places, 0.5 * options.gap_px * footprint, &count);
+  const std::vector<int> group =
+      groups_of(in_space(places), 0.5 * options.gap_px * footprint, &count);
   if (count == 0) return region;
   std::vector<Vector2d> known;
   for (const Vector3d& p : options.known) known.push_back(region.frame * p);

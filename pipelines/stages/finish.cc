@@ -179,6 +179,7 @@ WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
     const int first = missing.sketch.size() - added;
     probable = on_edgels(missing.sketch, first, missing.group, world, options.polish);
     probable = without_improbable(probable, first, missing, world, options, &added);
+    probable = drop_things(probable, world, report, progress);
   }
   report->counts.push_back({"candidates", double(missing.candidates)});
   report->counts.push_back({"strokes_missing", double(added)});

@@ -12,6 +12,7 @@
 #include "pipelines/detectors/detectors.h"
 #include "pipelines/survey/confidence.h"
 #include "pipelines/survey/observe.h"
+#include "pipelines/survey/other_things.h"
 #include "pipelines/survey/propose.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/fit/segment.h"
@@ -134,30 +135,50 @@ FirstStrokes fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& 
   return {rewritten(grown(chosen, world, options), world, options).sketch, nats};
 }
 
+namespace {
+
+// Without strokes that `drop` says are no edges of the object; `what` names them.
+Sketch without(const Sketch& sketch, const std::vector<char>& drop, const std::string& what,
+               const std::string& count, RunReport* report, Progress* progress) {
+  std::vector<bool> keep(sketch.size(), true);
+  for (int i = 0; i < sketch.size(); ++i) {
+    keep[i] = !drop[i];
+    if (keep[i] || !progress) continue;
+    const char* kind = kind_name(sketch.strokes[i].kind);
+    progress->note(std::string(kind) + " " + std::to_string(i) + " is " + what);
+  }
+  const Sketch out = keep_strokes(sketch, keep);
+  const double dropped = sketch.size() - out.size();
+  Numbers& counts = report->counts;
+  const auto at = std::find_if(counts.begin(), counts.end(),
+                               [&](const auto& known) { return known.first == count; });
+  if (at != counts.end())
+    at->second += dropped;
+  else if (dropped > 0)
+    counts.push_back({count, dropped});
+  return out;
+}
+
+}  // namespace
+
 Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
                   RunReport* report, Progress* progress) {
   const SampleLayout layout = plan_samples(sketch, kPrintSpacing * world.footprint);
   const Samples samples = evaluate_samples(sketch, layout);
   const std::vector<EdgeKind> kinds =
       detector.judge({samples.position, samples.tangent, layout.first});
-  std::vector<bool> keep(sketch.size(), true);
+  std::vector<char> drop(sketch.size());
   for (int i = 0; i < sketch.size(); ++i) {
     const auto begin = kinds.begin() + layout.first[i], end = kinds.begin() + layout.first[i + 1];
-    keep[i] = std::count(begin, end, EdgeKind::kPrint) <= std::count(begin, end, EdgeKind::kShape);
-    if (keep[i] || !progress) continue;
-    const char* kind = kind_name(sketch.strokes[i].kind);
-    progress->note(std::string(kind) + " " + std::to_string(i) + " is print");
+    drop[i] = std::count(begin, end, EdgeKind::kPrint) > std::count(begin, end, EdgeKind::kShape);
   }
-  const Sketch out = keep_strokes(sketch, keep);
-  const double dropped = sketch.size() - out.size();
-  Numbers& counts = report->counts;
-  const auto at = std::find_if(counts.begin(), counts.end(),
-                               [](const auto& count) { return count.first == "strokes_of_print"; });
-  if (at != counts.end())
-    at->second += dropped;
-  else if (dropped > 0)
-    counts.push_back({"strokes_of_print", dropped});
-  return out;
+  return without(sketch, drop, "print", "strokes_of_print", report, progress);
+}
+
+Sketch drop_things(const Sketch& sketch, const EdgeWorld& world, RunReport* report,
+                   Progress* progress) {
+  return without(sketch, of_other_things(sketch, world), "of another thing", "strokes_of_things",
+                 report, progress);
 }
 
 namespace {

@@ -61,6 +61,10 @@ FirstStrokes fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& 
 Sketch drop_print(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
                   RunReport* report, Progress* progress);
 
+/// The sketch without strokes of things beside the object (survey/other_things.h).
+Sketch drop_things(const Sketch& sketch, const EdgeWorld& world, RunReport* report,
+                   Progress* progress);
+
 /// Rounds, until the graph does not change any more or `options` say so: strokes are drawn and
 /// moved (optimize) if `options` have steps, weighed, and the graph is simplified; what it says
 /// then is moved by least squares.
