@@ -24,6 +24,7 @@ constexpr double kBeyond = 0.1;  // of the region's longest side, that may be th
 constexpr int kCoarseRounds = 2, kRounds = 3;  // of colours and cuts
 constexpr int kAgainPx = 3;  // [px] around what most views hold, where it may be, too
 constexpr int kFewestViews = 3;
+constexpr int kFewestWhole = 1;  // views that show all of the object
 constexpr int kMinChain = 3;  // edgels of a chain that leaves the silhouette
 
 // Places that nearly all views which see them hold, on a grid.
@@ -205,7 +206,7 @@ Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const 
   for (const Image<uint8_t>& mask : out.mask) out.trusted += !mask.empty();
   out.agreement = median(std::move(agreement));
   const bool enough = out.trusted >= std::max<double>(kFewestViews, options.least_trusted * n) &&
-                      std::count(whole.begin(), whole.end(), 1) >= kFewestViews;
+                      std::count(whole.begin(), whole.end(), 1) >= kFewestWhole;
   if (!enough) out.mask.clear();
   return out;
 }

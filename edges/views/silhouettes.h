@@ -25,8 +25,8 @@ struct SilhouetteOptions {
 /// tells right ones.
 struct Silhouettes {
   /// Per view, in pixels of the image: 1 on the object and about `slack_px` around it, empty
-  /// where nothing can be trusted. No views at all where too few can, or fewer than three of them
-  /// show the whole object.
+  /// where nothing can be trusted. No views at all where too few can, or none of them
+  /// shows the whole object.
   std::vector<Image<uint8_t>> mask;
   std::vector<double> slack_px;  ///< per view
   ObjectRegion region;           ///< around the object, as the silhouettes have it

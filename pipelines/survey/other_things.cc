@@ -15,11 +15,12 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kSpacingPx = 4;  // [px] of the places that stand for strokes
-constexpr double kTouchPx = 8;   // [px] within which strokes touch, and beside the object's outline
-constexpr double kNear = 0.25;   // of the region's diagonal: how far from its middle things count
-constexpr double kWithin = 0.5;  // share of a piece that stands within the object's outline
-constexpr double kMost = 0.6;    // of all, that the object must be for the rest to be told from it
-constexpr double kPart = 0.25;   // of the object, which no thing beside it has
+constexpr double kTouchPx = 8;    // [px] within which strokes touch
+constexpr double kBesidePx = 16;  // [px] around the outline of the object, that are its own
+constexpr double kNear = 0.25;    // of the region's diagonal: how far from its middle things count
+constexpr double kWithin = 0.5;   // share of a piece that stands within the object's outline
+constexpr double kMost = 0.6;     // of all, that the object must be for the rest to be told from it
+constexpr double kPart = 0.25;    // of the object, which no thing beside it has
 
 // Strokes that touch, seen from above, as places.
 using Piece = std::vector<Vector2d>;
@@ -79,7 +80,8 @@ std::vector<char> of_other_things(const Sketch& sketch, const EdgeWorld& world) 
   for (size_t i = 0; i < places.size(); ++i) pieces[piece[i]].push_back(places[i].head<2>());
   const Vector2d middle = frame * meeting_point(world.views);
   const double near = kNear * world.object.box.diagonal().norm();
-  const std::vector<char> own = grown_from(piece_of_object(pieces, middle, near), pieces, touch);
+  const std::vector<char> own =
+      grown_from(piece_of_object(pieces, middle, near), pieces, kBesidePx * world.footprint);
   size_t of_object = 0;
   for (int k = 0; k < count; ++k)
     if (own[k]) of_object += pieces[k].size();
