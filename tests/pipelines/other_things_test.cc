@@ -65,6 +65,17 @@ TEST(OtherThings, AreNotPiecesOfAnObjectThatFellApart) {
   EXPECT_THAT(of_other_things(s, table_top()), Each(0));
 }
 
+TEST(OtherThings, AreNotPiecesAtTheObjectsBorder) {
+  const EdgeWorld world = table_top();
+  for (const double px : {12, 40}) {
+    Sketch s;
+    add_cube({0.3, 0.3, 0}, 0.4, &s);
+    const double x = 0.7 + px * world.footprint;
+    add_line(&s, {x, 0.4, 0.2}, {x, 0.5, 0.2});
+    EXPECT_EQ(bool(of_other_things(s, world)[kCube]), px > 20) << px;
+  }
+}
+
 TEST(OtherThings, AreNotToldWhereTheObjectIsTheLesserPart) {
   Sketch s;
   add_cube({0.45, 0.45, 0}, 0.1, &s);
