@@ -64,7 +64,8 @@ std::vector<View> awry_views(std::vector<View> views) {
   return views;
 }
 
-// Every view stands where another one does.
+// Every view stands where another one does, none where it was (Sattolo's cycle): a shift by so many
+// views would only turn a ring of cameras.
 std::vector<View> shuffled_views(const std::vector<View>& views) {
   std::vector<size_t> from(views.size());
   std::iota(from.begin(), from.end(), 0);

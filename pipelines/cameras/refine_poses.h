@@ -21,8 +21,8 @@ struct PosedStrokes {
 /// never with "off"; of an object among things without masks also if the scene's points lie beside
 /// their pixels), settles cameras and strokes together (settle.h) and keeps these cameras if as
 /// many edgels lie on strokes. Views whose edgels do not fit the strokes of the others are left out
-/// with a warning. Without any of this nothing changes. Throws TooLittleError if views agree on no
-/// more than they would by accident.
+/// with a warning. Without any of this nothing changes. Throws TooLittleError if views agree on
+/// hardly more than they would by accident.
 /// Points of structure from motion, if the scene has any, hold the cameras where they fit them.
 PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const ReconstructOptions& options,
                           RunReport* report, Progress* progress);

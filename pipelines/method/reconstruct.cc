@@ -42,12 +42,12 @@ void tell_stop(const ReconstructOptions& options, RunReport* report, Progress* p
 // strokes, and these, with the points that structure from motion found, tell whether the cameras
 // err; then rounds of moving the strokes (by what their drawings differ in, if asked, and by least
 // squares) and simplifying the graph, until nothing changes; and the same once more with what is
-// found in the edgels that are left. With siblings of the part, their family's strokes,
-// moved onto the edgels, come first, and the rest is for edgels that are left. Strokes of things
-// beside the object go. Then the edges that the strokes lead to expect, where the pictures show
-// them. At last, the solid that the strokes
-// bound, if they tell one that has all edges the pictures show, and its edges that none shows.
-// Last, rounded edges go that came in as pieces or because others led to them.
+// found in the edgels that are left. With siblings of the part, their family's strokes, moved onto
+// the edgels, come first, and the rest is for edgels that are left. Strokes of things beside the
+// object go. Then the edges that the strokes lead to expect, where the pictures show them. At last,
+// the solid that the strokes bound, if they tell one that has all edges the pictures show, and its
+// edges that none shows. Last, rounded edges go that came in as pieces or because others led to
+// them.
 Reconstruction reconstruct(const Scene& scene, Detector* detector, const ReconstructOptions& given,
                            Progress* progress) {
   const ReconstructOptions options = started(given);

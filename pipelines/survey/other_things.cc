@@ -19,7 +19,7 @@ constexpr double kTouchPx = 8;    // [px] within which strokes touch
 constexpr double kBesidePx = 16;  // [px] around the outline of the object, that are its own
 constexpr double kNear = 0.25;    // of the region's diagonal: how far from its middle things count
 constexpr double kWithin = 0.5;   // share of a piece that stands within the object's outline
-constexpr double kMost = 0.6;     // of all, that the object must be for the rest to be told from it
+constexpr double kMost = 0.6;     // of all, that is the object where the rest is told from it
 constexpr double kPart = 0.25;    // of the object, which no thing beside it has
 
 // Strokes that touch, seen from above, as places.

@@ -12,7 +12,7 @@ namespace sketchsplat {
 /// touches, seen from above, is one piece; the object is the piece that has most strokes where the
 /// cameras look, all that stands within its outline, and what is too large for a thing beside it,
 /// as far as that goes on. Its region (find_object.h) is wider, for strokes fall apart less than
-/// single points.
+/// single points. Where all that is less than three fifths of the strokes, nothing is told.
 std::vector<char> of_other_things(const Sketch& sketch, const EdgeWorld& world);
 
 }  // namespace sketchsplat

@@ -176,8 +176,11 @@ TEST(Silhouettes, WhereManyPicturesDisagreeNothingIsKnown) {
 TEST(Silhouettes, OfAnObjectThatNoPictureShowsWholeNothingIsKnown) {
   std::vector<View> views = ring_of_views(10, kMiddle, 3);
   ASSERT_FALSE(found(views, {}).mask.empty());
+  const View whole = views[0];
   for (View& view : views) view.camera.height /= 2;  // the upper half of each picture alone
   EXPECT_TRUE(found(views, {}).mask.empty());
+  views[0] = whole;
+  EXPECT_FALSE(found(views, {}).mask.empty()) << "one tells where it ends";
 }
 
 TEST(Silhouettes, ThatLeaveOutEdgesOfTheObjectAreNone) {
