@@ -95,8 +95,8 @@ struct WithMissing {
 };
 
 /// Edges added that the others lead to expect and that the pictures show (add_missing.h), if they
-/// are edges more probably than not, or floor and walls that bear one another out. Nothing without
-/// pictures: other detectors' edgels are of something else.
+/// are edges more probably than not, or floor and walls that bear one another out, and of no other
+/// thing (drop_things). Nothing without pictures: other detectors' edgels are of something else.
 WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
                               const ReconstructOptions& options, RunReport* report,
                               Progress* progress);
