@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/types/errors.h"
+#include "datasets/types/parallel.h"
 #include "edges/image/cut_out.h"
 
 namespace sketchsplat {
@@ -110,13 +111,22 @@ PictureCut read_cut(const View& view, const ObjectRegion& region, double object_
   return cut;
 }
 
-void cut_again(const cv::Mat1b& maybe, int rounds, PictureCut* cut) {
-  cut->mask.release(), cut->distance.release();
-  if (cut->denominator == 0 || maybe.empty()) return;
-  const Image<uint8_t> found = cut_out(cut->picture, image_of(maybe), rounds);
-  if (found.empty()) return;
-  cut->mask = cv::Mat1b(found.height, found.width, const_cast<uint8_t*>(found.data.data())).clone();
-  cv::distanceTransform(cut->mask == 0, cut->distance, cv::DIST_L2, 3);
+void cut_again(const std::vector<cv::Mat1b>& maybe, int rounds, std::vector<PictureCut>* cuts) {
+  std::vector<const Picture*> pictures;
+  std::vector<Image<uint8_t>> where;
+  for (size_t v = 0; v < cuts->size(); ++v) {
+    pictures.push_back(&(*cuts)[v].picture);
+    where.push_back((*cuts)[v].denominator == 0 ? Image<uint8_t>() : image_of(maybe[v]));
+  }
+  const std::vector<Image<uint8_t>> found = cut_out(pictures, where, rounds);
+  parallel_for(int(cuts->size()), 1, [&](int v) {
+    PictureCut& cut = (*cuts)[v];
+    const Image<uint8_t>& mask = found[size_t(v)];
+    cut.mask.release(), cut.distance.release();
+    if (mask.empty()) return;
+    cut.mask = cv::Mat1b(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data())).clone();
+    cv::distanceTransform(cut.mask == 0, cut.distance, cv::DIST_L2, 3);
+  });
 }
 
 double PictureCut::distance_px(const View& view, const Vector3d& point, double* depth) const {

@@ -47,7 +47,8 @@ PictureCut read_cut(const View& view, const ObjectRegion& region, double object_
 /// as of cut_out(); empty if nobody knows.
 cv::Mat1b may_be(const ShrunkView& shrunk, const ObjectRegion& region);
 
-/// Cuts the picture anew. `maybe`: as of cut_out(), empty if nobody knows.
-void cut_again(const cv::Mat1b& maybe, int rounds, PictureCut* cut);
+/// Cuts the pictures anew, all together. `maybe`, one per picture: as of cut_out(), empty if nobody
+/// knows.
+void cut_again(const std::vector<cv::Mat1b>& maybe, int rounds, std::vector<PictureCut>* cuts);
 
 }  // namespace sketchsplat

@@ -9,6 +9,7 @@
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "edges/views/cell_groups.h"
 #include "edges/views/find_object.h"
 #include "edges/views/picture_cut.h"
 
@@ -22,10 +23,11 @@ constexpr int kCells = 64;  // along the longest side of the region
 constexpr double kEndPx = PictureCut::kEndPx;
 constexpr double kBeyond = 0.1;  // of the region's longest side, that may be the object's, too
 constexpr int kCoarseRounds = 2, kRounds = 3;  // of colours and cuts
-constexpr int kAgainPx = 3;  // [px] around what most views hold, where it may be, too
+constexpr int kAgainPx = 3;     // [px] around what most views hold, where it may be, too
+constexpr double kPart = 0.25;  // of the object, which nothing beside it that it touches not has
 constexpr int kFewestViews = 3;
 constexpr int kFewestWhole = 1;  // views that show all of the object
-constexpr int kMinChain = 3;  // edgels of a chain that leaves the silhouette
+constexpr int kMinChain = 3;     // edgels of a chain that leaves the silhouette
 
 // Places that nearly all views which see them hold, on a grid.
 struct Held {
@@ -62,8 +64,9 @@ Held held_by_most(const std::vector<View>& views, const std::vector<PictureCut>&
   return out;
 }
 
-// Share of the points that lie in a held cell or beside one.
-double share_held(const std::vector<Vector3d>& points, const Held& held, const Vector3d& low) {
+// Which points lie in a held cell or beside one.
+std::vector<char> are_held(const std::vector<Vector3d>& points, const Held& held,
+                           const Vector3d& low) {
   using Cell = std::array<int, 3>;
   const auto cell_of = [&](const Vector3d& p) {
     const Eigen::Array3d c = ((p - low) / held.cell).array().floor();
@@ -75,9 +78,32 @@ double share_held(const std::vector<Vector3d>& points, const Held& held, const V
     for (int k = 0; k < 27; ++k)
       cells.insert({c[0] + k / 9 - 1, c[1] + k / 3 % 3 - 1, c[2] + k % 3 - 1});
   }
-  const auto in = [&](const Vector3d& p) { return cells.count(cell_of(p)) > 0; };
-  const auto n = std::count_if(points.begin(), points.end(), in);
-  return points.empty() ? 1 : double(n) / double(points.size());
+  std::vector<char> out;
+  for (const Vector3d& p : points) out.push_back(cells.count(cell_of(p)) > 0);
+  return out;
+}
+
+// Moves what touches the object nowhere, and is too small for a part of it, to `beside`.
+void part_from_things(Held* held, Held* beside) {
+  int count = 0;
+  const std::vector<int> group = groups_of(held->places, held->cell, &count);
+  std::vector<int> size(size_t(count), 0);
+  for (const int g : group) ++size[size_t(g)];
+  const int most = count == 0 ? 0 : *std::max_element(size.begin(), size.end());
+  std::vector<Vector3d> kept;
+  for (size_t i = 0; i < group.size(); ++i)
+    (size[size_t(group[i])] >= kPart * most ? kept : beside->places).push_back(held->places[i]);
+  held->places = std::move(kept);
+  beside->cell = held->cell;
+}
+
+// Share of the known edges that the object holds, of those that are not of what stands beside it.
+double share_held(const std::vector<Vector3d>& edges, const Held& held, const Held& beside,
+                  const Vector3d& low) {
+  const std::vector<char> own = are_held(edges, held, low), other = are_held(edges, beside, low);
+  int of_own = 0, of_neither = 0;
+  for (size_t i = 0; i < edges.size(); ++i) of_own += own[i], of_neither += !own[i] && !other[i];
+  return of_own + of_neither == 0 ? 1 : double(of_own) / (of_own + of_neither);
 }
 
 // What the places cover in a picture, as wide as their cells.
@@ -141,14 +167,26 @@ cv::Mat1b first_of(Start start, const cv::Mat1b& maybe) {
   return start == Start::kLikely || maybe.empty() ? maybe : cv::Mat1b(cv::min(maybe, 1));
 }
 
+// Per view a mask of its picture; empty where that tells nothing.
+std::vector<cv::Mat1b> for_each(const std::vector<View>& views, const std::vector<PictureCut>& cuts,
+                                const std::function<cv::Mat1b(const ShrunkView&)>& mask) {
+  std::vector<cv::Mat1b> out(views.size());
+  parallel_for(int(views.size()), 1, [&](int v) {
+    if (cuts[v].denominator > 0) out[v] = mask({views[v], cuts[v].denominator});
+  });
+  return out;
+}
+
 // First cuts; what leaves out most of the known edges is none.
 void cut_first(Start start, const std::vector<View>& views, const ObjectRegion& edges,
                const ObjectRegion& region, const SilhouetteOptions& options,
                std::vector<PictureCut>* cuts) {
+  cut_again(for_each(views, *cuts,
+                     [&](const ShrunkView& v) { return first_of(start, may_be(v, region)); }),
+            kCoarseRounds, cuts);
   parallel_for(int(views.size()), 1, [&](int v) {
     PictureCut& cut = (*cuts)[v];
     if (cut.denominator == 0) return;
-    cut_again(first_of(start, may_be({views[v], cut.denominator}, region)), kCoarseRounds, &cut);
     if (cut.share(views[v], edges.edges) < options.least_cut) cut.mask.release();
   });
 }
@@ -158,16 +196,19 @@ void cut_first(Start start, const std::vector<View>& views, const ObjectRegion& 
 void cut_what_most_hold(Start start, const std::vector<View>& views, const Held& held,
                         const ObjectRegion& region, const SilhouetteOptions& options,
                         std::vector<PictureCut>* cuts) {
+  const std::vector<PictureCut> before = *cuts;
+  const auto again = [&](const ShrunkView& shrunk) {
+    const cv::Mat1b likely = covered(shrunk, held);
+    return first_of(start, grown(likely, kAgainPx) + likely);
+  };
+  cut_again(for_each(views, *cuts, again), kRounds, cuts);
   parallel_for(int(views.size()), 1, [&](int v) {
     PictureCut& cut = (*cuts)[v];
     if (cut.denominator == 0) return;
-    const ShrunkView shrunk{views[v], cut.denominator};
-    const cv::Mat1b likely = covered(shrunk, held), sure = surely_covered(shrunk, held, region);
-    const PictureCut before = cut;
-    cut_again(first_of(start, grown(likely, kAgainPx) + likely), kRounds, &cut);
+    const cv::Mat1b sure = surely_covered({views[v], cut.denominator}, held, region);
     const bool good = !cut.mask.empty() &&
                       (cv::countNonZero(sure) == 0 || share(cut.mask, sure) >= options.least_cut);
-    if (!good) cut = before;
+    if (!good) cut = before[v];
   });
 }
 
@@ -180,11 +221,14 @@ Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const 
   cut_first(start, views, edges, region, options, &cuts);
   Held held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
+  Held beside;
+  part_from_things(&held, &beside);
   cut_what_most_hold(start, views, held, region, options, &cuts);
   held = held_by_most(views, cuts, region, options.most_outvoted);
   if (held.places.empty()) return out;
+  part_from_things(&held, &beside);
   // Views may agree to take a face that looks like the table for it: edges tell.
-  if (share_held(edges.edges, held, region.box.min()) < options.least_edges) return out;
+  if (share_held(edges.edges, held, beside, region.box.min()) < options.least_edges) return out;
   out.region = region_around(held.places, 2 * held.cell, edges);
   out.mask.resize(n);
   out.slack_px.assign(n, 0);
@@ -224,9 +268,9 @@ Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion&
   });
   // What is likely tells objects among things of many colours, but may be too little of one whose
   // colours the table has, too.
-  const Silhouettes wide = silhouettes_from(Start::kMayBe, views, edges, region, options, cuts);
-  if (!wide.mask.empty()) return wide;
-  return silhouettes_from(Start::kLikely, views, edges, region, options, cuts);
+  const Silhouettes likely = silhouettes_from(Start::kLikely, views, edges, region, options, cuts);
+  if (!likely.mask.empty()) return likely;
+  return silhouettes_from(Start::kMayBe, views, edges, region, options, cuts);
 }
 
 namespace {

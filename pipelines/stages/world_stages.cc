@@ -8,6 +8,7 @@
 #include "datasets/types/parallel.h"
 #include "edges/views/find_object.h"
 #include "edges/views/focus.h"
+#include "edges/views/outlines.h"
 #include "edges/views/silhouettes.h"
 #include "pipelines/detectors/detectors.h"
 #include "pipelines/stages/stages.h"
@@ -100,26 +101,37 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, Ru
 
 namespace {
 
-// Edges of the object alone: noise and texture of what lies around it tell nothing about it.
-void detect_on_silhouettes(const Scene& scene, const Detector& detector, const Silhouettes& found,
-                           double most_sides, EdgeWorld* world) {
+// Edges of the object alone: noise and texture of what lies around it tell nothing about it; and
+// its outlines, where its colours tell them.
+EdgelMap detect_on_silhouette(const Scene& scene, const Detector& detector, const View& view,
+                              const Image<uint8_t>& mask, double slack_px, int min_chain) {
   constexpr double kAround = 6;  // [px] so that no edge of the object is one of the alpha's
+  const Picture seen = read_picture(view);
+  const auto edgels_in = [&](Picture picture) {
+    picture.alpha = alpha_around(mask, kAround);
+    picture.beyond_px = kAround + slack_px;
+    View looking = view;
+    looking.make_picture = [&] { return picture; };
+    return detector.detect(scene, looking);
+  };
+  EdgelMap map = edgels_in(seen);
+  Picture odds = odds_by_colours(seen, sides_of(mask, slack_px));
+  if (!odds.red.empty())
+    add_outlines(edgels_in(std::move(odds)), view, mask, slack_px, min_chain, &map);
+  map.mask = {};
+  return map;
+}
+
+void detect_on_silhouettes(const Scene& scene, const Detector& detector, const Silhouettes& found,
+                           const DetectOptions& options, EdgeWorld* world) {
+  const double sides = options.meaning.most_sides;
   parallel_for(int(world->views.size()), 1, [&](int v) {
-    const Image<uint8_t>& mask = found.mask[v];
-    if (mask.empty()) return;
-    View view = world->views[v];
-    view.make_picture = [&] {
-      Picture picture = read_picture(world->views[v]);
-      picture.alpha = alpha_around(mask, kAround);
-      picture.beyond_px = kAround + found.slack_px[v];
-      return picture;
-    };
+    if (found.mask[v].empty()) return;
     try {
-      EdgelMap map = detector.detect(scene, view);
-      map.mask = {};
+      EdgelMap map = detect_on_silhouette(scene, detector, world->views[v], found.mask[v],
+                                          found.slack_px[v], options.min_chain);
       map.grey = world->maps[v].grey;
-      if (most_sides > 0)
-        map = most_meaningful(map, most_sides * std::sqrt(double(map.width) * map.height));
+      if (sides > 0) map = most_meaningful(map, sides * std::sqrt(double(map.width) * map.height));
       world->maps[v] = std::move(map);
     } catch (const InputError&) {
       return;  // it was read before: what was found then stays
@@ -144,7 +156,7 @@ EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWor
                     : "views do not agree");
   report->counts.push_back({"silhouettes", kept ? double(found.trusted) : 0});
   if (kept && detector.takes_smaller_pictures())
-    detect_on_silhouettes(scene, detector, found, options.detect.meaning.most_sides, &world);
+    detect_on_silhouettes(scene, detector, found, options.detect, &world);
   return with_silhouettes(std::move(world), found);
 }
 

@@ -22,15 +22,20 @@ using Eigen::Vector3d;
 const Vector3d kMiddle(0.5, 0.5, 0.5);
 constexpr double kRadius = 0.3;
 
+const Vector3d kBeside = kMiddle + Vector3d(0.55, 0, 0);  // where another, smaller one may lie
+constexpr double kSmaller = 0.1;
+
 // Does the line of sight through a pixel meet the ball?
-bool on_ball(const View& view, double x, double y) {
+bool on_ball(const View& view, double x, double y, const Vector3d& middle = kMiddle,
+             double radius = kRadius) {
   const Vector3d ray =
       view.cam_from_world.rotation.transpose() * view.camera.ray({x, y}).normalized();
-  return ray.cross(kMiddle - view.center_in_world()).norm() < kRadius;
+  return ray.cross(middle - view.center_in_world()).norm() < radius;
 }
 
 // Orange on grey and brown blotches, with noise, as `denominator` pixels seen as one.
-Picture photograph(const View& view, int denominator, bool ball, unsigned seed) {
+Picture photograph(const View& view, int denominator, bool ball, unsigned seed,
+                   bool beside = false) {
   const Camera camera = view.camera.shrunk(denominator);
   Picture out;
   for (Image<float>* c : {&out.red, &out.green, &out.blue})
@@ -41,7 +46,8 @@ Picture photograph(const View& view, int denominator, bool ball, unsigned seed) 
     for (int x = 0; x < camera.width; ++x) {
       const double u = denominator * (x + 0.5) - 0.5, v = denominator * (y + 0.5) - 0.5;
       const bool brown = std::sin(0.05 * u) * std::cos(0.07 * v) > 0.2;
-      const bool orange = ball && on_ball(view, u, v);
+      const bool orange =
+          (ball && on_ball(view, u, v)) || (beside && on_ball(view, u, v, kBeside, kSmaller));
       out.red.at(x, y) = (orange ? 0.9f : brown ? 0.45f : 0.5f) + noise(rng);
       out.green.at(x, y) = (orange ? 0.5f : brown ? 0.3f : 0.5f) + noise(rng);
       out.blue.at(x, y) = (orange ? 0.2f : brown ? 0.2f : 0.5f) + noise(rng);
@@ -74,7 +80,7 @@ TEST(CutOut, ColoursTellADiscFromBlotches) {
     for (int x = margin; x + margin < maybe.width; ++x)
       for (const auto& [u, v] : {std::pair(-margin, 0), {margin, 0}, {0, -margin}, {0, margin}})
         maybe.at(x, y) |= truly(x + u, y + v) || truly(x, y);
-  const Image<uint8_t> out = cut_out(picture, maybe, 3);
+  const Image<uint8_t> out = cut_out({&picture}, {maybe}, 3)[0];
   ASSERT_FALSE(out.empty());
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
@@ -84,7 +90,7 @@ TEST(CutOut, ColoursTellADiscFromBlotches) {
   EXPECT_GT(disc, 1000);
   EXPECT_GT(right, 0.97 * disc);
   EXPECT_LT(cut, 1.03 * disc);
-  EXPECT_EQ(cut_out(picture, maybe, 3).data, out.data) << "nothing is left to chance";
+  EXPECT_EQ(cut_out({&picture}, {maybe}, 3)[0].data, out.data) << "nothing is left to chance";
 }
 
 // A grey disc on brown; where it may be lie three things of colours that are nowhere else.
@@ -112,7 +118,7 @@ TEST(CutOut, ThingsBesideTheObjectAreCutOffWhereTheObjectIsLikelyToBeElsewhere) 
     for (int x = 0; x < kSide; ++x) likely.at(x, y) += std::hypot(x - 68, y - 82) < kDisc;
   int of_things[2] = {}, of_object[2] = {}, disc = 0;
   for (const bool told : {false, true}) {
-    const Image<uint8_t> out = cut_out(picture, told ? likely : maybe, 2);
+    const Image<uint8_t> out = cut_out({&picture}, {told ? likely : maybe}, 2)[0];
     ASSERT_FALSE(out.empty());
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
@@ -130,8 +136,45 @@ TEST(CutOut, WithoutSurroundingsNothingIsTold) {
   const View view = ring_of_views(3, kMiddle, 3)[0];
   const Picture picture = photograph(view, 4, true, 1);
   const int w = picture.width(), h = picture.height();
-  EXPECT_TRUE(cut_out(picture, Image<uint8_t>(w, h, 1), 3).empty());
-  EXPECT_TRUE(cut_out(picture, Image<uint8_t>(w, h, 0), 3).empty());
+  EXPECT_TRUE(cut_out({&picture}, {Image<uint8_t>(w, h, 1)}, 3)[0].empty());
+  EXPECT_TRUE(cut_out({&picture}, {Image<uint8_t>(w, h, 0)}, 3)[0].empty());
+}
+
+// Half orange, half blue; the first picture's guess of where it is likely to be lacks the blue
+// half.
+TEST(CutOut, AFaceThatOnePictureTakesForItsSurroundingsIsToldByTheOthers) {
+  constexpr int kSide = 120, kDisc = 30, kViews = 4;
+  std::mt19937 rng(5);
+  std::normal_distribution<float> noise(0, 0.02f);
+  std::vector<Picture> pictures(kViews);
+  std::vector<Image<uint8_t>> maybe(kViews, Image<uint8_t>(kSide, kSide));
+  for (int k = 0; k < kViews; ++k) {
+    for (Image<float>* c : {&pictures[k].red, &pictures[k].green, &pictures[k].blue})
+      *c = Image<float>(kSide, kSide);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const double from_middle = std::hypot(x - 60, y - 60);
+        const bool disc = from_middle < kDisc, blue = disc && x > 60;
+        pictures[k].red.at(x, y) = (blue ? 0.3f : disc ? 0.9f : 0.5f) + noise(rng);
+        pictures[k].green.at(x, y) = (disc ? 0.5f : 0.35f) + noise(rng);
+        pictures[k].blue.at(x, y) = (blue ? 0.9f : 0.2f) + noise(rng);
+        const bool likely = disc && (k > 0 || !blue);
+        maybe[k].at(x, y) = likely ? 2 : from_middle < kDisc + 12 ? 1 : 0;
+      }
+  }
+  const auto share_of_blue = [&](const Image<uint8_t>& cut) {
+    int blue = 0, held = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 62; x < kSide; ++x)
+        if (std::hypot(x - 60, y - 60) < kDisc) ++blue, held += cut.at(x, y);
+    return double(held) / blue;
+  };
+  EXPECT_LT(share_of_blue(cut_out({&pictures[0]}, {maybe[0]}, 3)[0]), 0.5) << "alone";
+  std::vector<const Picture*> all;
+  for (const Picture& p : pictures) all.push_back(&p);
+  EXPECT_GT(share_of_blue(cut_out(all, maybe, 3)[0]), 0.95);
+  maybe[1] = {};
+  EXPECT_TRUE(cut_out(all, maybe, 3)[1].empty()) << "it is left out";
 }
 
 TEST(Silhouettes, HoldTheObjectAndLittleMore) {
@@ -163,6 +206,22 @@ TEST(Silhouettes, APictureThatShowsSomethingElseIsNotTrustedAndCarvesNothing) {
   EXPECT_TRUE(s.mask[4].empty());
   EXPECT_EQ(s.trusted, 11);
   EXPECT_TRUE(s.region.contains(kMiddle + Vector3d(0.9 * kRadius, 0, 0)));
+}
+
+TEST(Silhouettes, WhatStandsBesideTheObjectIsNoneOfItWhateverItsColours) {
+  const std::vector<View> views = ring_of_views(12, kMiddle, 3);
+  ObjectRegion region = around_ball();
+  region.box.extend(kBeside + Vector3d::Constant(kSmaller + 0.02));
+  for (int k = 0; k < 20; ++k)
+    region.edges.push_back(kMiddle + 0.95 * kRadius * Vector3d(std::cos(k), std::sin(k), 0));
+  for (int k = 0; k < 5; ++k)  // a fifth of the edges that are known are not the object's
+    region.edges.push_back(kBeside + 0.9 * kSmaller * Vector3d(std::cos(k), std::sin(k), 0));
+  const Silhouettes s = find_silhouettes(views, region, [&](int v, int denominator) {
+    return photograph(views[size_t(v)], denominator, true, unsigned(v), true);
+  });
+  ASSERT_EQ(s.mask.size(), views.size());
+  EXPECT_TRUE(s.region.contains(kMiddle + Vector3d(0.9 * kRadius, 0, 0)));
+  EXPECT_FALSE(s.region.contains(kBeside));
 }
 
 TEST(Silhouettes, WhereManyPicturesDisagreeNothingIsKnown) {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "edges/views/outlines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+
+namespace sketchsplat {
+namespace {
+
+constexpr double kSurroundings = 0.2;   // of the longest side of the silhouette
+constexpr double kOwnPx = 2;            // about an edgel, where odds show the same edge
+constexpr double kSameDirection = 0.9;  // cosine
+
+cv::Mat1b inside_of(const Image<uint8_t>& mask) {
+  return cv::Mat1b(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data()));
+}
+
+cv::Mat1f distance_to_zero(const cv::Mat1b& m) {
+  cv::Mat1f out;
+  cv::distanceTransform(m, out, cv::DIST_L2, 3);
+  return out;
+}
+
+}  // namespace
+
+Image<Side> sides_of(const Image<uint8_t>& mask, double slack_px) {
+  const cv::Mat1b inside = inside_of(mask);
+  const cv::Mat1f depth = distance_to_zero(inside), away = distance_to_zero(inside == 0);
+  const cv::Rect box = cv::boundingRect(inside);
+  const double around = kSurroundings * std::max(box.width, box.height);
+  Image<Side> out(mask.width, mask.height, Side::kUnknown);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      if (depth(y, x) > slack_px) out.at(x, y) = Side::kObject;
+      if (away(y, x) > 0 && away(y, x) <= around) out.at(x, y) = Side::kAround;
+    }
+  return out;
+}
+
+void add_outlines(const EdgelMap& odds, const View& view, const Image<uint8_t>& mask,
+                  double slack_px, int min_chain, EdgelMap* map) {
+  const cv::Mat1f depth = distance_to_zero(inside_of(mask));
+  build_lookup(map);
+  std::vector<char> keep(odds.edgels.size());
+  for (size_t i = 0; i < keep.size(); ++i) {
+    const Edgel& e = odds.edgels[i];
+    Eigen::Vector2d pixel;
+    if (!view.image_pixel({e.x, e.y}, &pixel)) continue;
+    const int x = int(std::lround(pixel.x())), y = int(std::lround(pixel.y()));
+    if (x < 0 || y < 0 || x >= mask.width || y >= mask.height) continue;
+    if (depth(y, x) <= 0 || depth(y, x) > slack_px) continue;
+    const int k = map->nearest_at(e.x, e.y);
+    keep[i] = true;
+    if (k < 0) continue;
+    const Edgel& near = map->edgels[k];
+    const double cosine = std::abs(near.nx * e.nx + near.ny * e.ny);
+    if (std::hypot(near.x - e.x, near.y - e.y) <= kOwnPx && cosine >= kSameDirection)
+      keep[i] = false;
+  }
+  append_runs(odds, keep, min_chain, map);
+}
+
+}  // namespace sketchsplat

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// Colours of an object and of what is around it, and the outlines that they tell.
+#include "edges/image/colours.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "edges/views/outlines.h"
+#include "tests/support/strokes.h"
+
+namespace sketchsplat {
+namespace {
+
+using namespace test;  // NOLINT
+
+constexpr int kSide = 160;
+constexpr double kMiddle = 80.3, kRadius = 50;
+
+double from_middle(double x, double y) { return std::hypot(x - kMiddle, y - kMiddle); }
+
+Image<uint8_t> disc(double radius) {
+  Image<uint8_t> out(kSide, kSide);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) out.at(x, y) = from_middle(x, y) < radius;
+  return out;
+}
+
+// A pale pink disc with dark spots on wood that is no darker than the spots and no brighter than
+// the disc.
+Picture spotted_disc() {
+  Picture out;
+  for (Image<float>* c : {&out.red, &out.green, &out.blue}) *c = Image<float>(kSide, kSide);
+  std::mt19937 rng(7);
+  std::normal_distribution<float> noise(0, 0.01f);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const bool on = from_middle(x, y) < kRadius, spot = x % 9 < 4 && y % 9 < 4;
+      const float grain = 0.08f * float(std::sin(0.7 * x + 0.2 * y));
+      out.red.at(x, y) = (!on ? 0.55f + grain : spot ? 0.3f : 0.7f) + noise(rng);
+      out.green.at(x, y) = (!on ? 0.42f + grain : spot ? 0.28f : 0.65f) + noise(rng);
+      out.blue.at(x, y) = (!on ? 0.25f + grain : spot ? 0.32f : 0.68f) + noise(rng);
+    }
+  return out;
+}
+
+// Of a circle about the middle, how many of 360 places have an edgel within 1.5 px.
+int places_found(const EdgelMap& map, double radius) {
+  int out = 0;
+  for (int k = 0; k < 360; ++k) {
+    const double x = kMiddle + radius * std::cos(k * M_PI / 180),
+                 y = kMiddle + radius * std::sin(k * M_PI / 180);
+    bool near = false;
+    for (const Edgel& e : map.edgels) near |= std::hypot(e.x - x, e.y - y) < 1.5;
+    out += near;
+  }
+  return out;
+}
+
+View whole_picture() {
+  View view = ring_of_views(3, {0.5, 0.5, 0.5}, 3)[0];
+  view.camera.width = view.camera.height = kSide;
+  return view;
+}
+
+TEST(Colours, SharesAddUpToOneAndAreNeverNone) {
+  Colours seen;
+  Picture one;
+  one.red = one.green = one.blue = Image<float>(1, 1, 0.5f);
+  const int bin = Colours::bins_of(one).data[0];
+  for (int k = 0; k < 100; ++k) seen.add(bin);
+  EXPECT_NEAR(seen.share(bin), 1, 1e-5);
+  seen.spread();
+  double sum = 0;
+  for (int b = 0; b < 32 * 32 * 32; ++b) sum += seen.share(b);
+  EXPECT_NEAR(sum, 1 + 0.0328, 1e-3) << "and a little of what was never seen";
+  EXPECT_NEAR(seen.share(bin), std::pow(6. / 16, 3), 1e-4);
+  EXPECT_GT(seen.share(0), 0);
+}
+
+TEST(Colours, OnePixelTellsThreeNatsAtMost) {
+  EXPECT_NEAR(nats_of(0.2, 0.1), std::log(2), 1e-12);
+  EXPECT_EQ(nats_of(1, 1e-6), 3);
+  EXPECT_EQ(nats_of(1e-6, 1), -3);
+}
+
+TEST(Outlines, OfSpottedThingsAreToldByColoursWhereBrightnessBreaksThem) {
+  const Picture picture = spotted_disc();
+  const Image<uint8_t> mask = disc(kRadius + 2);
+  const double slack = 4;
+  const EdgelMap plain = detect_edges(picture, DetectOptions());
+  const EdgelMap odds =
+      detect_edges(odds_by_colours(picture, sides_of(mask, slack)), DetectOptions());
+  EdgelMap both = plain;
+  add_outlines(odds, whole_picture(), mask, slack, 6, &both);
+  EXPECT_LT(places_found(plain, kRadius), 300) << "else this tests nothing";
+  EXPECT_GT(places_found(both, kRadius), 340);
+  for (size_t i = plain.edgels.size(); i < both.edgels.size(); ++i)
+    EXPECT_NEAR(from_middle(both.edgels[i].x, both.edgels[i].y), kRadius, 2.5)
+        << "nothing but outlines";
+}
+
+TEST(Outlines, ThatBrightnessTellsAreNotAddedTwice) {
+  Picture picture = spotted_disc();
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      if (from_middle(x, y) < kRadius)
+        picture.red.at(x, y) = picture.green.at(x, y) = picture.blue.at(x, y) = 0.9f;
+  const Image<uint8_t> mask = disc(kRadius + 2);
+  EdgelMap map = detect_edges(picture, DetectOptions());
+  const size_t before = map.edgels.size();
+  add_outlines(detect_edges(odds_by_colours(picture, sides_of(mask, 4)), DetectOptions()),
+               whole_picture(), mask, 4, 6, &map);
+  EXPECT_EQ(map.edgels.size(), before);
+}
+
+TEST(Outlines, OfAnObjectWithoutSurroundingsAreNone) {
+  const Picture picture = spotted_disc();
+  EXPECT_TRUE(odds_by_colours(picture, sides_of(Image<uint8_t>(kSide, kSide, 1), 4)).red.empty());
+  EXPECT_TRUE(odds_by_colours(picture, sides_of(Image<uint8_t>(kSide, kSide, 0), 4)).red.empty());
+}
+
+}  // namespace
+}  // namespace sketchsplat
