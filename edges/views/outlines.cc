@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kSurroundings = 0.2;   // of the longest side of the silhouette
 constexpr double kOwnPx = 2;            // about an edgel, where odds show the same edge
+constexpr double kSmoothPx = 1.5;       // over how much of the odds what lies around is told
+constexpr double kAround = 0.3;         // in odds, below which it is: -1.2 nat
+constexpr double kMarginPx = 2;         // [px] of a silhouette beyond what may be the object
 constexpr double kSameDirection = 0.9;  // cosine
 
 cv::Mat1b inside_of(const Image<uint8_t>& mask) {
@@ -20,6 +23,19 @@ cv::Mat1b inside_of(const Image<uint8_t>& mask) {
 cv::Mat1f distance_to_zero(const cv::Mat1b& m) {
   cv::Mat1f out;
   cv::distanceTransform(m, out, cv::DIST_L2, 3);
+  return out;
+}
+
+// The pieces of `all` that have pixels of `some`.
+cv::Mat1b connected_to(const cv::Mat1b& some, const cv::Mat1b& all) {
+  cv::Mat1i label;
+  const int n = cv::connectedComponents(all, label, 4, CV_32S);
+  std::vector<uchar> has(size_t(n), 0);
+  for (int y = 0; y < all.rows; ++y)
+    for (int x = 0; x < all.cols; ++x)
+      if (some(y, x)) has[size_t(label(y, x))] = 255;
+  cv::Mat1b out(all.size());
+  std::transform(label.begin(), label.end(), out.begin(), [&](int l) { return has[size_t(l)]; });
   return out;
 }
 
@@ -37,6 +53,18 @@ Image<Side> sides_of(const Image<uint8_t>& mask, double slack_px) {
       if (away(y, x) > 0 && away(y, x) <= around) out.at(x, y) = Side::kAround;
     }
   return out;
+}
+
+void trim_silhouette(const Picture& odds, Image<uint8_t>* mask, double* slack_px) {
+  cv::Mat1b inside = inside_of(*mask);
+  cv::Mat1f smooth(mask->height, mask->width);
+  std::copy(odds.red.data.begin(), odds.red.data.end(), smooth.begin());
+  cv::GaussianBlur(smooth, smooth, cv::Size(), kSmoothPx, kSmoothPx);
+  const cv::Mat1f depth = distance_to_zero(inside);
+  const cv::Mat1b outside = inside == 0, end = ~outside & (depth <= *slack_px + 1);
+  const cv::Mat1b trimmed = connected_to(outside, outside | (end & (smooth < kAround)));
+  inside &= distance_to_zero(trimmed) <= kMarginPx;
+  *slack_px = std::min(*slack_px, 2 * kMarginPx);
 }
 
 void add_outlines(const EdgelMap& odds, const View& view, const Image<uint8_t>& mask,

@@ -102,34 +102,35 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, Ru
 namespace {
 
 // Edges of the object alone: noise and texture of what lies around it tell nothing about it; and
-// its outlines, where its colours tell them.
+// its outlines, where its colours tell them. They also tell where a silhouette ends.
 EdgelMap detect_on_silhouette(const Scene& scene, const Detector& detector, const View& view,
-                              const Image<uint8_t>& mask, double slack_px, int min_chain) {
+                              int min_chain, Image<uint8_t>* mask, double* slack_px) {
   constexpr double kAround = 6;  // [px] so that no edge of the object is one of the alpha's
   const Picture seen = read_picture(view);
+  Picture odds = odds_by_colours(seen, sides_of(*mask, *slack_px));
+  const bool told = !odds.red.empty();
+  if (told) trim_silhouette(odds, mask, slack_px);
   const auto edgels_in = [&](Picture picture) {
-    picture.alpha = alpha_around(mask, kAround);
-    picture.beyond_px = kAround + slack_px;
+    picture.alpha = alpha_around(*mask, kAround);
+    picture.beyond_px = kAround + *slack_px;
     View looking = view;
     looking.make_picture = [&] { return picture; };
     return detector.detect(scene, looking);
   };
   EdgelMap map = edgels_in(seen);
-  Picture odds = odds_by_colours(seen, sides_of(mask, slack_px));
-  if (!odds.red.empty())
-    add_outlines(edgels_in(std::move(odds)), view, mask, slack_px, min_chain, &map);
+  if (told) add_outlines(edgels_in(std::move(odds)), view, *mask, *slack_px, min_chain, &map);
   map.mask = {};
   return map;
 }
 
-void detect_on_silhouettes(const Scene& scene, const Detector& detector, const Silhouettes& found,
-                           const DetectOptions& options, EdgeWorld* world) {
+void detect_on_silhouettes(const Scene& scene, const Detector& detector,
+                           const DetectOptions& options, Silhouettes* found, EdgeWorld* world) {
   const double sides = options.meaning.most_sides;
   parallel_for(int(world->views.size()), 1, [&](int v) {
-    if (found.mask[v].empty()) return;
+    if (found->mask[v].empty()) return;
     try {
-      EdgelMap map = detect_on_silhouette(scene, detector, world->views[v], found.mask[v],
-                                          found.slack_px[v], options.min_chain);
+      EdgelMap map = detect_on_silhouette(scene, detector, world->views[v], options.min_chain,
+                                          &found->mask[v], &found->slack_px[v]);
       map.grey = world->maps[v].grey;
       if (sides > 0) map = most_meaningful(map, sides * std::sqrt(double(map.width) * map.height));
       world->maps[v] = std::move(map);
@@ -147,16 +148,16 @@ EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWor
   const bool known = world.object.table || (!options.box.isEmpty() && !world.has_masks());
   if (!options.silhouettes || !known) return world;
   Stage stage("silhouettes", 0, report, progress);
-  const Silhouettes found = find_silhouettes(
-      world.views, world.object,
-      [&](int view, int denominator) { return read_picture(world.views[view], denominator); });
+  Silhouettes found = find_silhouettes(world.views, world.object, [&](int view, int denominator) {
+    return read_picture(world.views[view], denominator);
+  });
   const bool kept = !found.mask.empty();
   stage.result(kept ? std::to_string(found.trusted) + " of " + std::to_string(world.views.size()) +
                           " views agree"
                     : "views do not agree");
   report->counts.push_back({"silhouettes", kept ? double(found.trusted) : 0});
   if (kept && detector.takes_smaller_pictures())
-    detect_on_silhouettes(scene, detector, found, options.detect, &world);
+    detect_on_silhouettes(scene, detector, options.detect, &found, &world);
   return with_silhouettes(std::move(world), found);
 }
 

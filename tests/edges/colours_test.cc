@@ -101,6 +101,31 @@ TEST(Outlines, OfSpottedThingsAreToldByColoursWhereBrightnessBreaksThem) {
         << "nothing but outlines";
 }
 
+TEST(Outlines, OfColoursEndSilhouettesThatReachTooFar) {
+  const Picture picture = spotted_disc();
+  Image<uint8_t> mask = disc(kRadius + 9);
+  double slack = 12;
+  trim_silhouette(odds_by_colours(picture, sides_of(mask, slack)), &mask, &slack);
+  EXPECT_EQ(slack, 4);
+  int beyond = 0, missed = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      beyond += mask.at(x, y) && from_middle(x, y) > kRadius + slack;
+      missed += !mask.at(x, y) && from_middle(x, y) < kRadius;
+    }
+  EXPECT_EQ(missed, 0);
+  EXPECT_LT(beyond, 0.02 * M_PI * kRadius * kRadius) << "of 0.3 before";
+}
+
+TEST(Outlines, WhereColoursDoNotTellSilhouettesStayAsTheyAre) {
+  Picture grey;
+  grey.red = grey.green = grey.blue = Image<float>(kSide, kSide, 0.5f);
+  Image<uint8_t> mask = disc(kRadius + 9);
+  double slack = 12;
+  trim_silhouette(odds_by_colours(grey, sides_of(mask, slack)), &mask, &slack);
+  EXPECT_EQ(mask.data, disc(kRadius + 9).data);
+}
+
 TEST(Outlines, ThatBrightnessTellsAreNotAddedTwice) {
   Picture picture = spotted_disc();
   for (int y = 0; y < kSide; ++y)
