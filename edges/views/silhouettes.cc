@@ -24,7 +24,7 @@ constexpr double kEndPx = PictureCut::kEndPx;
 constexpr double kBeyond = 0.1;  // of the region's longest side, that may be the object's, too
 constexpr int kCoarseRounds = 2, kRounds = 3;  // of colours and cuts
 constexpr int kAgainPx = 3;     // [px] around what most views hold, where it may be, too
-constexpr double kPart = 0.25;  // of the object, which nothing beside it that it touches not has
+constexpr double kPart = 0.25;  // of the object, less than which is no part that touches it nowhere
 constexpr int kFewestViews = 3;
 constexpr int kFewestWhole = 1;  // views that show all of the object
 constexpr int kMinChain = 3;     // edgels of a chain that leaves the silhouette

@@ -35,9 +35,10 @@ struct Silhouettes {
 };
 
 /// Of an object whose edges lie in `region`, as far as they are known (its box, and what stands on
-/// the table within its outline), and no farther than a tenth of its size beyond. `read`: the
-/// picture of a view, shrunk by a whole denominator of at least 1; called from several threads, it
-/// may throw InputError: that view is not trusted.
+/// the table within its outline), and no farther than a tenth of its size beyond. What touches it
+/// nowhere, and is smaller than a quarter of it, is no part of it. `read`: the picture of a view,
+/// shrunk by a whole denominator of at least 1; called from several threads, it may throw
+/// InputError: that view is not trusted.
 Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion& region,
                              const std::function<Picture(int view, int denominator)>& read,
                              const SilhouetteOptions& options = {});
