@@ -1,68 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Colours of an object and of what is around it, and the outlines that they tell.
+// Colours of an object and of what is around it.
 #include "edges/image/colours.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
-
-#include "edges/views/outlines.h"
-#include "tests/support/strokes.h"
 
 namespace sketchsplat {
 namespace {
-
-using namespace test;  // NOLINT
-
-constexpr int kSide = 160;
-constexpr double kMiddle = 80.3, kRadius = 50;
-
-double from_middle(double x, double y) { return std::hypot(x - kMiddle, y - kMiddle); }
-
-Image<uint8_t> disc(double radius) {
-  Image<uint8_t> out(kSide, kSide);
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) out.at(x, y) = from_middle(x, y) < radius;
-  return out;
-}
-
-// A pale pink disc with dark spots on wood that is no darker than the spots and no brighter than
-// the disc.
-Picture spotted_disc() {
-  Picture out;
-  for (Image<float>* c : {&out.red, &out.green, &out.blue}) *c = Image<float>(kSide, kSide);
-  std::mt19937 rng(7);
-  std::normal_distribution<float> noise(0, 0.01f);
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      const bool on = from_middle(x, y) < kRadius, spot = x % 9 < 4 && y % 9 < 4;
-      const float grain = 0.08f * float(std::sin(0.7 * x + 0.2 * y));
-      out.red.at(x, y) = (!on ? 0.55f + grain : spot ? 0.3f : 0.7f) + noise(rng);
-      out.green.at(x, y) = (!on ? 0.42f + grain : spot ? 0.28f : 0.65f) + noise(rng);
-      out.blue.at(x, y) = (!on ? 0.25f + grain : spot ? 0.32f : 0.68f) + noise(rng);
-    }
-  return out;
-}
-
-// Of a circle about the middle, how many of 360 places have an edgel within 1.5 px.
-int places_found(const EdgelMap& map, double radius) {
-  int out = 0;
-  for (int k = 0; k < 360; ++k) {
-    const double x = kMiddle + radius * std::cos(k * M_PI / 180),
-                 y = kMiddle + radius * std::sin(k * M_PI / 180);
-    bool near = false;
-    for (const Edgel& e : map.edgels) near |= std::hypot(e.x - x, e.y - y) < 1.5;
-    out += near;
-  }
-  return out;
-}
-
-View whole_picture() {
-  View view = ring_of_views(3, {0.5, 0.5, 0.5}, 3)[0];
-  view.camera.width = view.camera.height = kSide;
-  return view;
-}
 
 TEST(Colours, SharesAddUpToOneAndAreNeverNone) {
   Colours seen;
@@ -85,65 +30,18 @@ TEST(Colours, OnePixelTellsThreeNatsAtMost) {
   EXPECT_EQ(nats_of(1e-6, 1), -3);
 }
 
-TEST(Outlines, OfSpottedThingsAreToldByColoursWhereBrightnessBreaksThem) {
-  const Picture picture = spotted_disc();
-  const Image<uint8_t> mask = disc(kRadius + 2);
-  const double slack = 4;
-  const EdgelMap plain = detect_edges(picture, DetectOptions());
-  const EdgelMap odds =
-      detect_edges(odds_by_colours(picture, sides_of(mask, slack)), DetectOptions());
-  EdgelMap both = plain;
-  add_outlines(odds, whole_picture(), mask, slack, 6, &both);
-  EXPECT_LT(places_found(plain, kRadius), 300) << "else this tests nothing";
-  EXPECT_GT(places_found(both, kRadius), 340);
-  for (size_t i = plain.edgels.size(); i < both.edgels.size(); ++i)
-    EXPECT_NEAR(from_middle(both.edgels[i].x, both.edgels[i].y), kRadius, 2.5)
-        << "nothing but outlines";
-}
-
-TEST(Outlines, OfColoursEndSilhouettesThatReachTooFar) {
-  const Picture picture = spotted_disc();
-  Image<uint8_t> mask = disc(kRadius + 9);
-  double slack = 12;
-  trim_silhouette(odds_by_colours(picture, sides_of(mask, slack)), &mask, &slack);
-  EXPECT_EQ(slack, 4);
-  int beyond = 0, missed = 0;
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      beyond += mask.at(x, y) && from_middle(x, y) > kRadius + slack;
-      missed += !mask.at(x, y) && from_middle(x, y) < kRadius;
-    }
-  EXPECT_EQ(missed, 0);
-  EXPECT_LT(beyond, 0.02 * M_PI * kRadius * kRadius) << "of 0.3 before";
-}
-
-TEST(Outlines, WhereColoursDoNotTellSilhouettesStayAsTheyAre) {
-  Picture grey;
-  grey.red = grey.green = grey.blue = Image<float>(kSide, kSide, 0.5f);
-  Image<uint8_t> mask = disc(kRadius + 9);
-  double slack = 12;
-  trim_silhouette(odds_by_colours(grey, sides_of(mask, slack)), &mask, &slack);
-  EXPECT_EQ(mask.data, disc(kRadius + 9).data);
-}
-
-TEST(Outlines, ThatBrightnessTellsAreNotAddedTwice) {
-  Picture picture = spotted_disc();
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x)
-      if (from_middle(x, y) < kRadius)
-        picture.red.at(x, y) = picture.green.at(x, y) = picture.blue.at(x, y) = 0.9f;
-  const Image<uint8_t> mask = disc(kRadius + 2);
-  EdgelMap map = detect_edges(picture, DetectOptions());
-  const size_t before = map.edgels.size();
-  add_outlines(detect_edges(odds_by_colours(picture, sides_of(mask, 4)), DetectOptions()),
-               whole_picture(), mask, 4, 6, &map);
-  EXPECT_EQ(map.edgels.size(), before);
-}
-
-TEST(Outlines, OfAnObjectWithoutSurroundingsAreNone) {
-  const Picture picture = spotted_disc();
-  EXPECT_TRUE(odds_by_colours(picture, sides_of(Image<uint8_t>(kSide, kSide, 1), 4)).red.empty());
-  EXPECT_TRUE(odds_by_colours(picture, sides_of(Image<uint8_t>(kSide, kSide, 0), 4)).red.empty());
+TEST(Colours, OfAnObjectWithoutSurroundingsTellNothing) {
+  constexpr int kSide = 20;
+  Picture picture;
+  picture.red = picture.green = picture.blue = Image<float>(kSide, kSide, 0.5f);
+  Image<Side> side(kSide, kSide, Side::kObject);
+  EXPECT_TRUE(odds_by_colours(picture, side).red.empty());
+  for (int k = 0; k < 63; ++k) side.data[size_t(k)] = Side::kAround;
+  EXPECT_TRUE(odds_by_colours(picture, side).red.empty()) << "too few";
+  side.data[63] = Side::kAround;
+  const Picture odds = odds_by_colours(picture, side);
+  ASSERT_FALSE(odds.red.empty());
+  EXPECT_NEAR(odds.red.at(5, 5), 0.5, 1e-6) << "both sides have the same colour";
 }
 
 }  // namespace
