@@ -8,6 +8,7 @@
 
 #include "datasets/types/parallel.h"
 #include "edges/views/lift.h"
+#include "edges/views/mask_distance.h"
 
 namespace sketchsplat {
 
@@ -68,8 +69,7 @@ bool spans(const std::vector<Edgel>& edgels, const Image<uint8_t>& mask) {
   constexpr double kReach = 0.9;  // of the mask's width and height
   Eigen::AlignedBox2f box;
   for (const Edgel& e : edgels) box.extend(Eigen::Vector2f(e.x, e.y));
-  const cv::Rect all =
-      cv::boundingRect(cv::Mat1b(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data())));
+  const cv::Rect all = cv::boundingRect(mat_of(mask));
   return box.sizes().x() >= kReach * all.width && box.sizes().y() >= kReach * all.height;
 }
 

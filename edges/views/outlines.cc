@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "edges/views/mask_distance.h"
 
 namespace sketchsplat {
 namespace {
@@ -15,16 +17,6 @@ constexpr double kSmoothPx = 1.5;       // over how much of the odds what lies a
 constexpr double kAround = 0.3;         // in odds, below which it is: -1.2 nat
 constexpr double kMarginPx = 2;         // [px] of a silhouette beyond what may be the object
 constexpr double kSameDirection = 0.9;  // cosine
-
-cv::Mat1b inside_of(const Image<uint8_t>& mask) {
-  return cv::Mat1b(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data()));
-}
-
-cv::Mat1f distance_to_zero(const cv::Mat1b& m) {
-  cv::Mat1f out;
-  cv::distanceTransform(m, out, cv::DIST_L2, 3);
-  return out;
-}
 
 // The pieces of `all` that have pixels of `some`.
 cv::Mat1b connected_to(const cv::Mat1b& some, const cv::Mat1b& all) {
@@ -42,7 +34,7 @@ cv::Mat1b connected_to(const cv::Mat1b& some, const cv::Mat1b& all) {
 }  // namespace
 
 Image<Side> sides_of(const Image<uint8_t>& mask, double slack_px) {
-  const cv::Mat1b inside = inside_of(mask);
+  const cv::Mat1b inside = mat_of(mask);
   const cv::Mat1f depth = distance_to_zero(inside), away = distance_to_zero(inside == 0);
   const cv::Rect box = cv::boundingRect(inside);
   const double around = kSurroundings * std::max(box.width, box.height);
@@ -56,7 +48,7 @@ Image<Side> sides_of(const Image<uint8_t>& mask, double slack_px) {
 }
 
 void trim_silhouette(const Picture& odds, Image<uint8_t>* mask, double* slack_px) {
-  cv::Mat1b inside = inside_of(*mask);
+  cv::Mat1b inside(mask->height, mask->width, mask->data.data());
   cv::Mat1f smooth(mask->height, mask->width);
   std::copy(odds.red.data.begin(), odds.red.data.end(), smooth.begin());
   cv::GaussianBlur(smooth, smooth, cv::Size(), kSmoothPx, kSmoothPx);
@@ -69,7 +61,7 @@ void trim_silhouette(const Picture& odds, Image<uint8_t>* mask, double* slack_px
 
 void add_outlines(const EdgelMap& odds, const View& view, const Image<uint8_t>& mask,
                   double slack_px, int min_chain, EdgelMap* map) {
-  const cv::Mat1f depth = distance_to_zero(inside_of(mask));
+  const cv::Mat1f depth = distance_to_zero(mat_of(mask));
   build_lookup(map);
   std::vector<char> keep(odds.edgels.size());
   for (size_t i = 0; i < keep.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "datasets/types/errors.h"
 #include "datasets/types/parallel.h"
 #include "edges/image/cut_out.h"
+#include "edges/views/mask_distance.h"
 
 namespace sketchsplat {
 
@@ -124,8 +125,8 @@ void cut_again(const std::vector<cv::Mat1b>& maybe, int rounds, std::vector<Pict
     const Image<uint8_t>& mask = found[size_t(v)];
     cut.mask.release(), cut.distance.release();
     if (mask.empty()) return;
-    cut.mask = cv::Mat1b(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data())).clone();
-    cv::distanceTransform(cut.mask == 0, cut.distance, cv::DIST_L2, 3);
+    cut.mask = mat_of(mask).clone();
+    cut.distance = distance_to_zero(cut.mask == 0);
   });
 }
 

@@ -11,6 +11,7 @@
 #include "datasets/types/parallel.h"
 #include "edges/views/cell_groups.h"
 #include "edges/views/find_object.h"
+#include "edges/views/mask_distance.h"
 #include "edges/views/picture_cut.h"
 
 namespace sketchsplat {
@@ -278,9 +279,7 @@ namespace {
 // Edgels on the silhouette alone; those near its end are outlines.
 EdgelMap on_silhouette(const EdgelMap& map, const View& view, const Image<uint8_t>& mask,
                        double slack_px) {
-  const cv::Mat1b inside(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data()));
-  cv::Mat1f depth;  // [px] to the nearest pixel outside
-  cv::distanceTransform(inside, depth, cv::DIST_L2, 3);
+  const cv::Mat1f depth = distance_to_zero(mat_of(mask));
   EdgelMap from = map;
   std::vector<char> keep(map.edgels.size());
   for (size_t i = 0; i < map.edgels.size(); ++i) {
@@ -304,9 +303,7 @@ EdgelMap on_silhouette(const EdgelMap& map, const View& view, const Image<uint8_
 }  // namespace
 
 Image<float> alpha_around(const Image<uint8_t>& mask, double px) {
-  const cv::Mat1b inside(mask.height, mask.width, const_cast<uint8_t*>(mask.data.data()));
-  cv::Mat1f distance;
-  cv::distanceTransform(inside == 0, distance, cv::DIST_L2, 3);
+  const cv::Mat1f distance = distance_to_zero(mat_of(mask) == 0);
   Image<float> out(mask.width, mask.height);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) out.at(x, y) = distance(y, x) <= px ? 1.f : 0.f;
