@@ -29,7 +29,8 @@ EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, Ru
 
 /// Without masks, where the object is known (focus_on_object): its silhouettes, told by colours, if
 /// those of nearly all views agree (silhouettes.h); a detector that looks at single pictures looks
-/// again at what lies on them. `scene`: of the world's views.
+/// again at what lies on them, and for outlines by colours (outlines.h). `scene`: of the world's
+/// views.
 EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world,
                            const ReconstructOptions& options, RunReport* report,
                            Progress* progress);
