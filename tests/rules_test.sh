@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # rules_test.sh SOURCE BUILD [RULE]: what holds of every file of the repository. Rules: licences,
-# packages, cgal, style_sheet, words, columns, folders, loops, names.
+# packages, cgal, style_sheet, words, commands, columns, folders, loops, names.
 set -uo pipefail
 build=$(readlink -f "$2")
 cd "$1"
@@ -55,6 +55,17 @@ words() {  # README.md is short, and what it and docs/ link to exists
       [ -e "$(dirname "$page")/${link%%#*}" ] || fail "$page links to $link, which is not there"
     done < <(grep -o '](\([^)]*\))' "$page" | sed 's/](\(.*\))/\1/')
   done
+}
+
+commands() {  # the first block of README.md has the two commands of a fresh machine, and CI runs the second
+  local block
+  block=$(awk '/^```/ { inside++; next } inside == 1' README.md)
+  local command
+  for command in demo test; do
+    grep -q "^\./run $command\b" <<<"$block" || fail "the first block of README.md lacks ./run $command"
+    ./run help 2>&1 | grep -q "\./run $command\b" || fail "./run does not know $command"
+  done
+  grep -q '/run" test' .ci/run || fail ".ci/run does not call ./run test"
 }
 
 columns() {  # as .clang-format has it; texts of JSON may be longer
@@ -111,6 +122,6 @@ names() {  # a linker takes either of two types of one name for both (one-defini
       /^(struct|class) [A-Z]/ && !/;$/ { print space "::" $2 }' | sort | uniq -d)
 }
 
-for rule in ${3:-licences packages cgal style_sheet words columns folders loops names}; do $rule; done
+for rule in ${3:-licences packages cgal style_sheet words commands columns folders loops names}; do $rule; done
 [ $failed = 0 ] && echo passed
 exit $failed
