@@ -4,11 +4,11 @@
 
     constants.py [--list accept|scale|budget]
 
-Counts constants (constexpr or const scalars named k...) and numeric members of structs named ...Options,
-...Model, ...Prices or ...Cost in the folders that a plain `reconstruct` of a rendered scene runs.
-Their names sort them: "scale" are standard deviations, prices and priors; "budget" are numbers of
-steps, samples and other limits of effort, and tolerances of arithmetic; everything else accepts or
-rejects something.
+Counts constants (constexpr or const scalars named k...) and numeric members of structs named
+...Options, ...Model, ...Prices or ...Cost in the folders that a plain `reconstruct` of a rendered
+scene runs. Their names sort them: "scale" are standard deviations, prices and priors; "budget" are
+numbers of steps, samples and other limits of effort, and tolerances of arithmetic; everything else
+accepts or rejects something.
 """
 import argparse
 import re
@@ -18,15 +18,19 @@ FOLDERS = ["edges/image", "edges/views", "edges/contrast", "sketches", "topology
            "pipelines/survey", "pipelines/candidates", "pipelines/join", "pipelines/adjust",
            "pipelines/detectors", "pipelines/stages", "pipelines/cameras", "pipelines/method"]
 APART = ["sketches/io/"]  # formats of files
-SCALE = re.compile(r"sigma|noise|price|nats?$|nat_|cost|prior|odds|scatter|weight|deviation|rate|share_of"
-                   r"|probab|dof|freedom|loss|tukey|huber|scale|log_", re.I)
-BUDGET = re.compile(r"most_|^kmost|steps|rounds|iterations|trials|samples|spacing|grid|bins|cells|tries"
-                    r"|budget|^kmax|max_|buffer|bytes|epsilon|tiny|digits|threads|chunk|block|seed"
-                    r"|version|columns|levels|stride|sweep|per_|size_of|eps$|relative$|numer|zero"
-                    r"|candidates|passes|places$|pieces|k_points|directions|modes|halvings|repeats"
-            r"|k_cell|lookup|window|num_|root2|kinds|unknowns|infinity|never|starts|rays|heights|nulls|white|k_pad|moves$|matchings|maxima|check|every|seconds|step$|depth_|octave|order|degree|knots|precision", re.I)
-CONSTANT = re.compile(r"\b(?:constexpr|const)\s+(?:static\s+)?(?:double|float|int|size_t|long|unsigned"
-                      r"|uint\w+_t|int\w+_t)\s+(k[A-Z]\w*)\s*=")
+SCALE = re.compile(
+    r"sigma|noise|price|nats?$|nat_|cost|prior|odds|scatter|weight|deviation|rate|share_of|probab"
+    r"|dof|freedom|loss|tukey|huber|scale|log_", re.I)
+BUDGET = re.compile(
+    r"most_|^k_?most|steps|rounds|iterations|trials|samples|spacing|grid|bins|cells|tries"
+    r"|budget|max_|buffer|bytes|epsilon|tiny|digits|threads|chunk|block|seed|version|columns"
+    r"|levels|stride|sweep|per_|size_of|eps$|relative$|numer|zero|candidates|passes|seconds"
+    r"|step$|depth_|octave|order|degree|knots|precision|places$|pieces|k_points|directions"
+    r"|modes|halvings|repeats|k_cell|lookup|window|num_|root2|kinds|unknowns|infinity|never"
+    r"|starts|rays|heights|nulls|white|k_pad|moves$|matchings|maxima|check|every", re.I)
+CONSTANT = re.compile(
+    r"\b(?:constexpr|const)\s+(?:static\s+)?"
+    r"(?:double|float|int|size_t|long|unsigned|uint\w+_t|int\w+_t)\s+(k[A-Z]\w*)\s*=")
 STRUCT = re.compile(r"\bstruct\s+(\w*(?:Options|Model|Prices|Cost))\b[^;{]*\{(.*?)\n\};", re.S)
 MEMBER = re.compile(r"^\s*(?:double|float|int|size_t)\s+([^;(]*=[^;]*);", re.M)
 
@@ -37,7 +41,8 @@ def without_comments(text):
 
 def numbers():
     """Of every number: its name and its file."""
-    files = subprocess.run(["git", "ls-files", *FOLDERS], check=True, capture_output=True, text=True).stdout
+    files = subprocess.run(["git", "ls-files", *FOLDERS], check=True, capture_output=True,
+                           text=True).stdout
     for path in files.split():
         if not path.endswith((".cc", ".h")) or path.startswith(tuple(APART)):
             continue
@@ -59,8 +64,10 @@ def kind(name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--list", choices=["accept", "scale", "budget"], help="name each of this kind, too")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--list", choices=["accept", "scale", "budget"],
+                        help="name each of this kind, too")
     arguments = parser.parse_args()
     found = sorted(numbers())
     for which in ("accept", "scale", "budget"):
