@@ -2,12 +2,12 @@
 #include "datasets/readers/frame.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 
 #include "datasets/io/image_planes.h"
+#include "datasets/types/dense.h"
 #include "datasets/types/errors.h"
 
 namespace sketchsplat {
@@ -17,12 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLargest = 1e100;   // cubes of it overflow
 constexpr double kTolerance = 1e-3;  // of entries that are 0 or 1 in a rigid transform or a K
-
-/// Nearest rotation in the least-squares sense. Reference: S. Umeyama, PAMI 13(4), 1991.
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
-}
 
 std::string complaint_about_pose(const Eigen::Matrix4d& pose) {
   if (!pose.allFinite()) return "its pose is not finite";

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/types/lens.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <initializer_list>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -14,12 +15,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Smallest positive root of 1 + a1 t + a2 t^2 + ...; infinite if there is none. The reversed
 /// polynomial is monic in 1 / t, so that no leading coefficient is too small to divide by.
 double first_root(std::initializer_list<double> coefficients) {
-  const int n = int(coefficients.size());
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
-  companion.row(0) = -Eigen::Map<const Eigen::RowVectorXd>(coefficients.begin(), n);
-  companion.diagonal(-1).setOnes();
+  const Eigen::VectorXd reversed =
+      Eigen::Map<const Eigen::VectorXd>(coefficients.begin(), Eigen::Index(coefficients.size()));
   double largest = 0;  // of 1 / t
-  for (const std::complex<double>& inverse : companion.eigenvalues())
+  for (const std::complex<double>& inverse : polynomial_roots(reversed))
     if (std::abs(inverse.imag()) <= 1e-9 * std::abs(inverse))
       largest = std::max(largest, inverse.real());
   return largest > 1e-8 ? 1 / largest : kInfinity;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/types/triangulate.h"
 
-#include <Eigen/Cholesky>
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 
@@ -21,7 +21,7 @@ bool triangulate(const std::vector<View>& views, const std::vector<PointSight>& 
       H += J.transpose() * J;
       g += J.transpose() * (view.camera.project(in_cam) - ideal);
     }
-    *point -= H.ldlt().solve(g);
+    *point -= solve_symmetric(H, g);
     if (information) *information = H;
   }
   return point->allFinite();

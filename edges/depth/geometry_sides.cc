@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "edges/depth/geometry_sides.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -60,7 +61,8 @@ bool facing_in(const GeometryFields& f, const Place& p, double from, double to, 
   });
   if (n < 6) return false;
   const double s = 0.5 * (from + to);
-  const Vector3d plane = A.ldlt().solve(b), ray = f.camera.ray({p.x + s * p.nx, p.y + s * p.ny});
+  const Vector3d plane = solve_symmetric(A, b),
+                 ray = f.camera.ray({p.x + s * p.nx, p.y + s * p.ny});
   const double w = plane[0] + plane[1] * s, cosine = normal.normalized().dot(ray) / ray.norm();
   if (!(w > 0)) return false;
   // The normal that the slopes of 1 / depth imply, scaled so that its product with the ray is 1.
@@ -124,7 +126,7 @@ Side fit_side(const GeometryFields& f, const Place& p, int sign) {
   if (side.samples < 4) return side;
   const Eigen::RowVector4d mean = B.row(0) / side.samples;
   if (side.extent >= kLinear * f.scale && side.samples >= 8) {
-    const Eigen::Matrix<double, 3, 4> fit = A.ldlt().solve(B);
+    const Eigen::Matrix<double, 3, 4> fit = solve_symmetric(A, B);
     side.normal = fit.block<1, 3>(0, 0).transpose();
     side.normal_slope = fit.block<1, 3>(1, 0).transpose();
     side.inverse = fit(0, 3), side.inverse_s = fit(1, 3), side.inverse_t = fit(2, 3);
@@ -162,7 +164,7 @@ Step fit_step(const std::vector<StepSample>& samples) {
     }
     sum_ss = H(0, 0);
     H.diagonal() += Eigen::Vector2d(1e-3, 0.1);  // the width of few samples is no news
-    const Eigen::Vector2d d = H.ldlt().solve(g);
+    const Eigen::Vector2d d = solve_symmetric(H, g);
     step.s += std::clamp(d[0], -0.7, 0.7);
     log_sigma = std::clamp(log_sigma + std::clamp(d[1], -0.5, 0.5), std::log(0.35), std::log(4.0));
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "datasets/types/dense.h"
 #include "edges/image/detect.h"
 
 namespace sketchsplat {
@@ -28,7 +28,7 @@ class EdgelParabola {
   }
   int count() const { return count_; }
   /// Of 1, t and t^2. Three edgels at least, at different places.
-  Eigen::Vector3d coefficients() const { return normal_.ldlt().solve(right_); }
+  Eigen::Vector3d coefficients() const { return solve_symmetric(normal_, right_); }
 
  private:
   Edgel at_;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "edges/tags/tag_square.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "edges/tags/tag_edges.h"
@@ -66,7 +66,7 @@ Vector3d meet(const std::vector<View>& views, const std::vector<const TagPatch*>
     A += across;
     b += across * view.center_in_world();
   }
-  return A.ldlt().solve(b);
+  return solve_symmetric(A, b);
 }
 
 double sighted_side_px(const TagPatch& patch) {
@@ -226,7 +226,7 @@ void drop_strays(std::vector<const TagPatch*>* patches, std::vector<Measured>* a
 
 // Standard deviation of the logarithm of the side at the solution.
 double log_sigma(const Equations& e, const std::vector<const TagPatch*>& patches) {
-  const Matrix7d inverse = e.A.ldlt().solve(Matrix7d::Identity());
+  const Matrix7d inverse = solve_symmetric(e.A, Matrix7d::Identity());
   const double n = double(patches.size());
   // Views were fitted, by some three numbers more than the number of interest is worth.
   const double between = n / std::max(1.0, n - 3) * (inverse * e.between * inverse)(6, 6);
@@ -263,7 +263,7 @@ std::optional<TagSquare> fit_tag(const std::vector<View>& views,
     if (round > 1) drop_strays(&patches, &all);
     if (int(patches.size()) < kFewestViews) return std::nullopt;
     const Equations e = equations(&all, scatter(all));
-    const Vector7d step = e.A.ldlt().solve(e.b);
+    const Vector7d step = solve_symmetric(e.A, e.b);
     if (!(e.weight > kFewestEdges) || !step.allFinite()) return std::nullopt;
     square->views = int(patches.size());
     square->rms_px = std::sqrt(e.squares / e.weight);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "edges/views/find_object.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <random>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "edges/views/cell_groups.h"
 #include "edges/views/convex_hull.h"
@@ -52,8 +52,8 @@ Plane refined(const Plane& plane, const std::vector<Vector3d>& points, double to
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points)
     if (plane.absDistance(p) < tolerance) spread += (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(spread);
-  Vector3d normal = es.eigenvectors().col(0);
+  const auto es = eigen_symmetric(spread);
+  Vector3d normal = es.vectors.col(0);
   if (normal.dot(plane.normal()) < 0) normal = -normal;
   return Plane(normal, mean);
 }

@@ -3,12 +3,11 @@
 // 1996; here with the direction of the edge as one more dimension of the vote.
 #include "edges/views/lift.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 #include "edges/views/far_cells.h"
 
@@ -236,12 +235,11 @@ bool Sweeper::refine(int view, int index, Eigen::Vector3d x, Eigen::Vector3d t, 
       H += w * n * n.transpose();
       g += w * n * n.dot(center_[m.view] - x);
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(planes);
-    t = es.eigenvectors().col(0);
-    if (es.eigenvalues()[1] < 1e-3 * es.eigenvalues()[2])
-      return false;                                 // all planes alike: no depth
-    H += t * t.transpose() * (H.trace() + 1e-300);  // stay: nothing is known along the edge
-    x += H.ldlt().solve(g);
+    const auto es = eigen_symmetric(planes);
+    t = es.vectors.col(0);
+    if (es.values[1] < 1e-3 * es.values[2]) return false;  // all planes alike: no depth
+    H += t * t.transpose() * (H.trace() + 1e-300);         // stay: nothing is known along the edge
+    x += solve_symmetric(H, g);
   }
   collect(view, index, x, t, kInlierPx, tight, matches);
   if (int(matches->size()) < options_.min_views) return false;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "edges/views/rim.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 #include "edges/views/normals_along.h"
 
@@ -107,6 +106,8 @@ std::optional<Sighting> sight(const EdgeWorld& world, int view, const Frames& f,
   return *middle;
 }
 
+constexpr double kWorstCondition = 1e9;
+
 // Least squares; without a radius if `fixed`. False if the views do not tell.
 bool solve(const Sightings& sightings, bool fixed, Model* model) {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
@@ -119,10 +120,14 @@ bool solve(const Sightings& sightings, bool fixed, Model* model) {
     }
   if (fixed)  // no pivot of another magnitude: units of length must not matter
     H.row(2).setZero(), H.col(2).setZero(), H(2, 2) = H.trace(), g(2) = 0;
-  const Eigen::LDLT<Eigen::Matrix3d> ldlt(H);
-  if (ldlt.info() != Eigen::Success || ldlt.rcond() < 1e-9) return false;
-  model->value = ldlt.solve(g);
-  model->covariance = ldlt.solve(Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d inverse = solve_symmetric(H, Eigen::Matrix3d::Identity());
+  const auto norm = [](const Eigen::Matrix3d& m) {
+    return m.cwiseAbs().colwise().sum().maxCoeff();
+  };
+  const double size = norm(H);
+  if (!(size > 0) || !(size * norm(inverse) < kWorstCondition)) return false;
+  model->value = solve_symmetric(H, g);
+  model->covariance = inverse;
   // The scatter that is there, if it is larger.
   double squares = 0;
   int n = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "edges/views/lift.h"
@@ -94,7 +94,7 @@ Eigen::Vector3d meeting_point(const std::vector<View>& views) {
     A += M;
     b += M * v.center_in_world();
   }
-  return A.ldlt().solve(b);
+  return solve_symmetric(A, b);
 }
 
 bool EdgeWorld::has_masks() const {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/alignment.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "datasets/types/dense.h"
 #include "eval/inspect/datums.h"
 #include "eval/inspect/pose_choice.h"
 #include "eval/inspect/robust_fit.h"
@@ -61,11 +61,11 @@ class Aligner {
     }
     Eigen::Matrix<double, 7, 7> scatter = Eigen::Matrix<double, 7, 7>::Zero();
     for (const Vector7& g : pulls) scatter += g * g.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 7, 7>> es(all.information);
+    const auto es = eigen_symmetric(all.information);
     Vector7 row = Vector7::Zero();  // of the inverse
     for (int k = 0; k < 7; ++k)
-      if (es.eigenvalues()[k] > kFreeDirection * all.weight)
-        row += es.eigenvectors()(6, k) / es.eigenvalues()[k] * es.eigenvectors().col(k);
+      if (es.values[k] > kFreeDirection * all.weight)
+        row += es.vectors(6, k) / es.values[k] * es.vectors.col(k);
     const double edges = double(pulls.size());
     if (edges < kFewEdges) return std::numeric_limits<double>::infinity();
     return std::sqrt(row.dot(scatter * row) * edges / (edges - 7)) / robust_.fit().lever();
@@ -136,13 +136,12 @@ class Aligner {
   // H^-1 (sum A C A^T) H^-1, A = sum w J^T B: how errors of strokes move the pose.
   void find_covariance(const std::vector<PosePlace>& places, const PoseSystem& system,
                        Alignment* out) const {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> es(
-        system.information.topLeftCorner<6, 6>());
+    const auto es = eigen_symmetric(system.information.topLeftCorner<6, 6>());
     Eigen::Matrix<double, 6, 6> inverse = Eigen::Matrix<double, 6, 6>::Zero();
     for (int k = 0; k < 6; ++k) {
-      const auto v = es.eigenvectors().col(k);
-      if (es.eigenvalues()[k] > kFreeDirection * system.weight)
-        inverse += v * v.transpose() / es.eigenvalues()[k];
+      const auto v = es.vectors.col(k);
+      if (es.values[k] > kFreeDirection * system.weight)
+        inverse += v * v.transpose() / es.values[k];
       else
         ++out->free_directions;
     }

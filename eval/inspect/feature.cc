@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/feature.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "datasets/types/dense.h"
 #include "eval/inspect/stroke_errors.h"
 #include "sketches/curve/curve.h"
 
@@ -35,7 +34,7 @@ void fit_circle(const Matrix3Xd& points, const VectorXd& weights, Feature* f) {
     a += weights[i] * row * row.transpose();
     b += weights[i] * row * (row.x() * row.x() + row.y() * row.y());
   }
-  const Vector3d c = a.ldlt().solve(b);
+  const Vector3d c = solve_symmetric(a, b);
   const double r2 = c.z() + (c.x() * c.x() + c.y() * c.y()) / 4;
   f->ok = f->ok && c.allFinite() && r2 > 0;
   f->point += c.x() / 2 * x + c.y() / 2 * y;
@@ -104,9 +103,9 @@ Feature fit_feature(FeatureKind kind, const Matrix3Xd& points, const VectorXd& w
   if (points.cols() < 2) return f;
   f.point = points * weights / weights.sum();
   const Matrix3Xd d = points.colwise() - f.point;
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> es(d * weights.asDiagonal() * d.transpose());
-  const Vector3d spread = es.eigenvalues().cwiseMax(0).cwiseSqrt();
-  f.direction = es.eigenvectors().col(kind == FeatureKind::kLine ? 2 : 0);
+  const auto es = eigen_symmetric(d * weights.asDiagonal() * d.transpose());
+  const Vector3d spread = es.values.cwiseMax(0).cwiseSqrt();
+  f.direction = es.vectors.col(kind == FeatureKind::kLine ? 2 : 0);
   if (f.direction.dot(along) < 0) f.direction = -f.direction;
   f.ok = kind == FeatureKind::kLine ? spread[2] > 0 : spread[1] > kLeastWidth * spread[2];
   if (kind == FeatureKind::kCircle) fit_circle(points, weights, &f);

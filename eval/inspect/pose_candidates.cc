@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/pose_candidates.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
+#include "datasets/types/dense.h"
 #include "eval/inspect/edge_samples.h"
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
@@ -100,7 +100,7 @@ Shape shape_of(const Sketch& sketch) {
     moments += samples.length[i] / total * d * d.transpose();
   }
   out.spread = std::sqrt(moments.trace());
-  out.principal = Eigen::SelfAdjointEigenSolver<Matrix3d>(moments).eigenvectors();
+  out.principal = eigen_symmetric(moments).vectors;
   return out;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/pose_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
 
@@ -112,19 +112,19 @@ void weigh_down(double scale, std::vector<PosePlace>* places) {
 Eigen::Matrix<double, 7, 1> solve(const PoseSystem& system, const Eigen::MatrixXd& basis,
                                   double least, Eigen::MatrixXd* left) {
   const Eigen::MatrixXd information = basis.transpose() * system.information * basis;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> es(information);
+  const auto es = eigen_symmetric(information);
   const Eigen::VectorXd slope = basis.transpose() * system.slope;
   Eigen::VectorXd move = Eigen::VectorXd::Zero(basis.cols());
   int open = 0;  // eigenvalues ascend
   for (int k = 0; k < basis.cols(); ++k) {
-    const auto v = es.eigenvectors().col(k);
-    if (es.eigenvalues()[k] > least * system.weight)
-      move -= v * v.dot(slope) / es.eigenvalues()[k];
+    const auto v = es.vectors.col(k);
+    if (es.values[k] > least * system.weight)
+      move -= v * v.dot(slope) / es.values[k];
     else
       open = k + 1;
   }
   const Eigen::Matrix<double, 7, 1> out = basis * move;
-  if (left) *left = (basis * es.eigenvectors().leftCols(open)).eval();  // may be the basis
+  if (left) *left = (basis * es.vectors.leftCols(open)).eval();  // may be the basis
   return out;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/prior.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -91,12 +91,10 @@ namespace {
 // Orthonormal columns that span those of `moves`.
 MatrixXd span_of(const MatrixXd& moves) {
   if (moves.cols() == 0) return moves;
-  const Eigen::JacobiSVD<MatrixXd> svd(moves, Eigen::ComputeThinU);
+  const Svd of = svd(moves);
   Eigen::Index k = 0;
-  while (k < svd.singularValues().size() &&
-         svd.singularValues()[k] > kLeastRigid * svd.singularValues()[0])
-    ++k;
-  return svd.matrixU().leftCols(k);
+  while (k < of.values.size() && of.values[k] > kLeastRigid * of.values[0]) ++k;
+  return of.u.leftCols(k);
 }
 
 }  // namespace
@@ -138,10 +136,10 @@ MatrixXd PieceLikelihood::prior_moves(double scale, int wrong) const {
 
 double PieceLikelihood::log_evidence(double scale, int wrong, const Kind& kind) const {
   const MatrixXd moves = prior_moves(scale, wrong);
-  const Eigen::LLT<MatrixXd> llt(moves * moves.transpose() + kind.covariance);
-  const VectorXd z = llt.matrixL().solve(known_);
+  const Cholesky root(moves * moves.transpose() + kind.covariance);
+  const VectorXd z = root.whitened(known_);
   const double log_share = std::log(kind.share / double(moves_.size()));
-  return log_share - 0.5 * z.squaredNorm() - llt.matrixLLT().diagonal().array().log().sum();
+  return log_share - 0.5 * z.squaredNorm() - 0.5 * root.log_determinant();
 }
 
 double PieceLikelihood::log_evidence(double scale) const {
@@ -155,14 +153,14 @@ double PieceLikelihood::log_evidence(double scale) const {
 // Of the standard normal numbers that the moves are taken by: what is not moved stays exactly.
 DeviationModel PieceLikelihood::posterior(double scale, int wrong, const Kind& kind) const {
   const MatrixXd moves = prior_moves(scale, wrong);
-  const MatrixXd weighted = kind.covariance.llt().solve(moves);
+  const MatrixXd weighted = Cholesky(kind.covariance).solve(moves);
   const Eigen::Index n = moves.cols();
-  const Eigen::LLT<MatrixXd> information(MatrixXd::Identity(n, n) + moves.transpose() * weighted);
+  const Cholesky information(MatrixXd::Identity(n, n) + moves.transpose() * weighted);
   DeviationModel out;
   const VectorXd by = information.solve(weighted.transpose() * known_);
   out.mean = VectorXd(basis_ * (moves * by) + wave_).reshaped(2, basis_.rows() / 2);
   out.between = measured_.between;
-  out.modes = basis_ * information.matrixL().solve(moves.transpose()).transpose();
+  out.modes = basis_ * information.whitened(moves.transpose()).transpose();
   return out;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/sigma_model.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_jacobian.h"
@@ -22,16 +22,15 @@ using Eigen::Vector3d;
 
 // Symmetric square root's columns: a matrix L with L L^T = the covariance.
 MatrixXd root_of(const MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(covariance);
-  return es.eigenvectors() * es.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  const auto es = eigen_symmetric(covariance);
+  return es.vectors * es.values.cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 double largest_deviation(const MatrixXd& modes) {
   double largest = 0;
   for (int j = 0; j + 1 < modes.rows(); j += 2) {
     const Matrix2d c = modes.middleRows<2>(j) * modes.middleRows<2>(j).transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix2d> es(c, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, es.eigenvalues()[1]);
+    largest = std::max(largest, eigenvalues_symmetric(c)[1]);
   }
   return std::sqrt(std::max(0.0, largest));
 }

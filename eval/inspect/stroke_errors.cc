@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/stroke_errors.h"
 
-#include <Eigen/Eigenvalues>
-
+#include "datasets/types/dense.h"
 #include "sketches/curve/curve_jacobian.h"
 
 namespace sketchsplat {
 
 StrokeErrors::StrokeErrors(const Sketch& measured, const SigmaModel& sigma, int stroke)
     : measured_(measured), sigma_(sigma), stroke_(stroke) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> es(
-      calibrated_covariance(measured, stroke, sigma));
-  root_ = es.eigenvectors() * es.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  const auto es = eigen_symmetric(calibrated_covariance(measured, stroke, sigma));
+  root_ = es.vectors * es.values.cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 Eigen::Matrix<double, 3, kErrorsOfStroke> StrokeErrors::at(double t) const {

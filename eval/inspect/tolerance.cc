@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "eval/inspect/tolerance.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -38,10 +39,9 @@ const MatrixXd& normal_numbers() {
 // Modes that span the same covariance, not more than there are numbers for.
 MatrixXd few_modes(const MatrixXd& modes) {
   if (modes.cols() <= kMostModes) return modes;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(modes * modes.transpose());
+  const auto es = eigen_symmetric(modes * modes.transpose());
   const Eigen::Index n = std::min<Eigen::Index>(kMostModes, modes.rows());
-  return es.eigenvectors().rightCols(n) *
-         es.eigenvalues().tail(n).cwiseMax(0).cwiseSqrt().asDiagonal();
+  return es.vectors.rightCols(n) * es.values.tail(n).cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ double interval_probability(double mean, double sigma, double half) {
 }
 
 double square_probability(const Vector2d& mean, const Matrix2d& covariance, double half) {
-  const Eigen::SelfAdjointEigenSolver<Matrix2d> es(covariance);
+  const auto es = eigen_symmetric(covariance);
   double product = 1;
   for (int k = 0; k < 2; ++k)
-    product *= interval_probability(es.eigenvectors().col(k).dot(mean),
-                                    std::sqrt(std::max(0.0, es.eigenvalues()[k])), half);
+    product *= interval_probability(es.vectors.col(k).dot(mean),
+                                    std::sqrt(std::max(0.0, es.values[k])), half);
   return product;
 }
 

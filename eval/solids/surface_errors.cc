@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "eval/solids/surface_errors.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "eval/inspect/stroke_errors.h"
 #include "sketches/curve/curve.h"
 #include "topology/solid/surface.h"
@@ -65,17 +65,15 @@ Vector3d by_point(const Surface& s, const Vector3d& p, double reach) {
 
 // Orthonormal columns that a symmetric matrix takes to nothing, and the others.
 std::pair<MatrixXd, MatrixXd> split(const MatrixXd& matrix) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(matrix);
-  const double largest = matrix.rows() > 0 ? es.eigenvalues().maxCoeff() : 0;
+  const auto es = eigen_symmetric(matrix);
+  const double largest = matrix.rows() > 0 ? es.values.maxCoeff() : 0;
   int none = 0;
-  while (none < matrix.rows() && !(es.eigenvalues()[none] > kNone * largest)) ++none;
-  return {es.eigenvectors().leftCols(none), es.eigenvectors().rightCols(matrix.rows() - none)};
+  while (none < matrix.rows() && !(es.values[none] > kNone * largest)) ++none;
+  return {es.vectors.leftCols(none), es.vectors.rightCols(matrix.rows() - none)};
 }
 
 double largest_sigma(const MatrixXd& errors) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(errors * errors.transpose(),
-                                                   Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, es.eigenvalues().maxCoeff()));
+  return std::sqrt(std::max(0.0, eigenvalues_symmetric(errors * errors.transpose()).maxCoeff()));
 }
 
 }  // namespace
@@ -227,7 +225,7 @@ void SurfaceErrors::solve(const MatrixXd& normal, const MatrixXd& push) {
   const auto [none, known] = split(inner);
   free_ = kept_ * none;
   const MatrixXd along = kept_ * known, own = along.transpose() * normal * along;
-  errors_ = along * own.ldlt().solve(along.transpose() * push);
+  errors_ = along * solve_symmetric(own, along.transpose() * push);
 }
 
 bool SurfaceErrors::open(const VectorXd& gradient) const {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/adjust/relation_weigher.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -20,8 +19,7 @@ constexpr double kLeastSigma = 1e-4;   // [px] of a relation
 constexpr double kMeaningless = 1e-6;  // share of its range in which a free coordinate is left
 
 double largest_deviation(const MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, es.eigenvalues().maxCoeff()));
+  return std::sqrt(std::max(0.0, eigenvalues_symmetric(covariance).maxCoeff()));
 }
 
 }  // namespace
@@ -147,16 +145,16 @@ RelationTrial RelationWeigher::weigh(std::vector<Relation>* relations, double ra
   trial.rows.setFromTriplets(entries.begin(), entries.end());
   trial.residual = Eigen::Map<VectorXd>(residual.data(), k);
   MatrixXd s = gaussian_.covariance(trial.rows);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> es(s, Eigen::EigenvaluesOnly);
+  const VectorXd values = eigenvalues_symmetric(s);
   for (int i = 0; i < k; ++i) {
-    const double deviation = std::sqrt(std::max(0.0, es.eigenvalues()[i]));  // [sigma]
+    const double deviation = std::sqrt(std::max(0.0, values[i]));  // [sigma]
     if (!(deviation > kNews)) continue;
     trial.news = true;
     const double told = std::log(range_px / (deviation * sigma)) - naming / k;
     trial.gain += std::min(options_.price, told - options_.price);
   }
   s.diagonal().array() += 1;
-  trial.nats = 0.5 * trial.residual.dot(s.ldlt().solve(trial.residual));
+  trial.nats = 0.5 * trial.residual.dot(solve_symmetric(s, trial.residual));
   if (!std::isfinite(trial.nats)) trial.news = false;
   return trial;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/adjust/whitened.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -30,13 +31,13 @@ SampleQuadratics whitened(const StrokeObservation& seen, double floor_px, double
     const double common = common_px.empty() ? 0 : common_px[seen.layout.stroke[i]];
     const double unknown = unknown_of(stroke, floor_px, common) * footprint * footprint;
     const double scatter_px = std::max(q.sigma_px, stroke.rms_px);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(q.information[i]);
-    const Vector3d values = es.eigenvalues();
+    const auto es = eigen_symmetric(q.information[i]);
+    const Vector3d values = es.values;
     Vector3d shrink = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
       if (values[k] > 1e-6 * values[2])
         shrink[k] = 1 / (scatter_px * scatter_px + unknown * values[k]);
-    const Eigen::Matrix3d& v = es.eigenvectors();
+    const Eigen::Matrix3d& v = es.vectors;
     out.information[i] = v * shrink.cwiseProduct(values.cwiseMax(0)).asDiagonal() * v.transpose();
     out.slope.col(i) = v * shrink.asDiagonal() * v.transpose() * q.slope.col(i);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/cameras/camera_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "pipelines/cameras/camera_system.h"
 #include "pipelines/cameras/halves.h"
 
@@ -30,7 +30,7 @@ double CameraSystem::scale_sigma() const {
   for (size_t s = 0; s < growth.size(); ++s)
     by_camera -= normals_[s].cross.transpose() *
                  (normals_[s].root.transpose() * (normals_[s].root * growth[s])) / spread;
-  const double variance = by_camera.dot(hessian_.ldlt().solve(by_camera));
+  const double variance = by_camera.dot(solve_symmetric(hessian_, by_camera));
   return variance > 0 ? std::sqrt(variance) : 0;
 }
 
@@ -42,14 +42,15 @@ CameraEvidence CameraSystem::evidence() {
   const auto prior_cross = information.topRightCorner(poses, shared);
   const MatrixXd prior_shared =  // poses are free in it
       information.bottomRightCorner(shared, shared) -
-      prior_cross.transpose() * information.topLeftCorner(poses, poses).ldlt().solve(prior_cross);
+      prior_cross.transpose() *
+          solve_symmetric(information.topLeftCorner(poses, poses), prior_cross);
   Halves of_poses, of_shared;
   const VectorXd of_prior = prior_.gradient + information * now_.cameras;
   for (const int half : {0, 1}) {
     assemble(rows, 0, {Part::kViews, half});
     gradient_ -= of_prior;
     const auto cross = hessian_.topRightCorner(poses, shared);
-    const MatrixXd follow = hessian_.topLeftCorner(poses, poses).ldlt().solve(cross);
+    const MatrixXd follow = solve_symmetric(hessian_.topLeftCorner(poses, poses), cross);
     of_shared.hessian[half] =
         hessian_.bottomRightCorner(shared, shared) - cross.transpose() * follow;
     of_shared.hessian[half] -= prior_shared;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/cameras/camera_system.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 
@@ -230,7 +230,7 @@ void CameraSystem::assemble(const std::vector<Linear>& rows, double damping, con
 
 CameraSystem::State CameraSystem::step() const {
   State next = now_;
-  const VectorXd move = -hessian_.ldlt().solve(gradient_);
+  const VectorXd move = -solve_symmetric(hessian_, gradient_);
   next.cameras += move;
   for (size_t s = 0; s < next.strokes.size(); ++s) {
     const StrokeVector by = normals_[s].step(move);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/cameras/eliminate.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 
 namespace sketchsplat {
@@ -19,12 +19,11 @@ constexpr int kTogether = 32;   // strokes: long products are faster than many s
 StrokeMatrix root_of_inverse(const StrokeMatrix& A, double damping) {
   StrokeMatrix root = StrokeMatrix::Zero();
   if (!(A.trace() > 0) || !A.allFinite()) return root;
-  const Eigen::SelfAdjointEigenSolver<StrokeMatrix> es(A);
-  const double largest = es.eigenvalues()[kStrokeUnknowns - 1];
+  const auto es = eigen_symmetric(A);
+  const double largest = es.values[kStrokeUnknowns - 1];
   for (int k = 0; k < kStrokeUnknowns; ++k)
-    if (es.eigenvalues()[k] > kRank * largest)
-      root.row(k) =
-          es.eigenvectors().col(k).transpose() / std::sqrt(es.eigenvalues()[k] + damping * largest);
+    if (es.values[k] > kRank * largest)
+      root.row(k) = es.vectors.col(k).transpose() / std::sqrt(es.values[k] + damping * largest);
   return root;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/cameras/gauge.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -102,7 +102,7 @@ Gauge solve(const std::vector<PoseError>& errors, const std::vector<double>& wei
     normal += weight[v] * by.transpose() * by;
     right += weight[v] * by.transpose() * whitened(e, s);
   }
-  return normal.ldlt().solve(right);
+  return solve_symmetric(normal, right);
 }
 
 Gauge likeliest(const std::vector<PoseError>& errors) {
@@ -165,8 +165,8 @@ struct PlacedPoint {
 bool place(const std::vector<View>& views, const ScenePoint& point, PlacedPoint* out) {
   out->stated = out->found = point.position;
   if (!triangulate(views, point.sights, &out->found, &out->information)) return false;
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(out->information);
-  return parts.eigenvalues()[0] > kLeastParallax * parts.eigenvalues()[2];
+  const auto parts = eigen_symmetric(out->information);
+  return parts.values[0] > kLeastParallax * parts.values[2];
 }
 
 // From where cameras see points to where they are stated, about their middle.
@@ -187,7 +187,7 @@ Gauge gauge_between(const std::vector<PlacedPoint>& points, const Vector3d& midd
       normal += back * by[i];
       right += back * (p.stated - p.found);
     }
-    gauge = normal.ldlt().solve(right);
+    gauge = solve_symmetric(normal, right);
     double sum = 0;
     std::vector<double> square;
     for (size_t i = 0; i < points.size(); ++i) {

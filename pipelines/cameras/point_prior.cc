@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/cameras/point_prior.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "datasets/readers/smaller_pictures.h"
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 
 namespace sketchsplat {
@@ -89,12 +89,11 @@ void add_point(const CameraUnknowns& cameras, const std::vector<SightTerm>& term
     A += weight * term.by.point.transpose() * term.by.point;
     b += weight * term.by.point.transpose() * term.residual;
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> es(A);
+  const auto es = eigen_symmetric(A);
   Matrix3d inverse = Matrix3d::Zero();
   for (int k = 0; k < 3; ++k)
-    if (es.eigenvalues()[k] > kRank * es.eigenvalues()[2])
-      inverse +=
-          es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() / es.eigenvalues()[k];
+    if (es.values[k] > kRank * es.values[2])
+      inverse += es.vectors.col(k) * es.vectors.col(k).transpose() / es.values[k];
   for (int j = 0; j < n; ++j) {
     const Vector3d moved = inverse * cross.col(j);
     sum->gradient[used[j]] -= moved.dot(b);

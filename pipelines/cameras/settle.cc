@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "edges/views/recast.h"
 #include "pipelines/cameras/bring_back.h"
@@ -50,7 +51,7 @@ double moved_px(const Shown& a, const Shown& b, double spacing) {
   const Eigen::Matrix3Xd before = evaluate_samples(a.sketch, layout).position;
   const Eigen::Matrix3Xd after = evaluate_samples(b.sketch, layout).position;
   if (before.cols() == 0) return 0;
-  const Eigen::Matrix4d together = Eigen::umeyama(before, after);
+  const Eigen::Matrix4d together = similarity_between(before, after);
   const Eigen::Matrix3Xd there = (together * before.colwise().homogeneous()).topRows<3>();
   std::vector<double> moved;
   for (size_t v = 0; v < a.views.size(); ++v) {

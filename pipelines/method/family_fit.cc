@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/method/family_fit.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "edges/views/unexplained.h"
@@ -130,7 +129,9 @@ FamilyFit::FamilyFit(const Family& family, const EdgeWorld& world, int most_view
     : family_(family), world_(world) {
   const int all = int(world.views.size()), count = std::min(all, most_views);
   for (int k = 0; k < count; ++k) views_.push_back(int((long(k) * all) / count));
-  precision_ = family.covariance.inverse();
+  precision_ = solve_symmetric(
+      family.covariance,
+      Eigen::MatrixXd::Identity(family.covariance.rows(), family.covariance.cols()));
   widest_px_ = std::max(2 * kNear, kWidest * world.bounds.sizes().maxCoeff() / world.footprint);
   lookups_.resize(views_.size());
   parallel_for(int(views_.size()), 1, [&](int k) {
@@ -197,11 +198,11 @@ double FamilyFit::misfit(const Sibling& sibling) const {
 std::vector<Sibling> FamilyFit::starts() const {
   std::vector<Eigen::VectorXd> members = {family_.mean};
   for (int k = 0; k < family_.siblings; ++k) members.push_back(family_.numbers.col(k));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> es(family_.covariance);
+  const auto es = eigen_symmetric(family_.covariance);
   for (int k = 0; k < std::min<int>(kModes, int(family_.modes.size())); ++k) {
-    const Eigen::Index at = es.eigenvalues().size() - 1 - k;
+    const Eigen::Index at = es.values.size() - 1 - k;
     const Eigen::VectorXd move =
-        kFar * std::sqrt(std::max(0.0, es.eigenvalues()[at])) * es.eigenvectors().col(at);
+        kFar * std::sqrt(std::max(0.0, es.values[at])) * es.vectors.col(at);
     members.push_back(family_.mean + move);
     members.push_back(family_.mean - move);
   }
@@ -306,7 +307,7 @@ Sibling FamilyFit::step(const Sibling& now, double reach_px) const {
     }
   }
   a.diagonal().tail(7).array() += 1e-9 * (1 + a.diagonal().tail(7).maxCoeff());
-  const Eigen::VectorXd move = a.ldlt().solve(b);
+  const Eigen::VectorXd move = solve_symmetric(a, b);
   if (!move.allFinite()) return now;
   const Eigen::Matrix<double, 7, 1> p = move.tail(7);
   Similarity change;

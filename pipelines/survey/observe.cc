@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/survey/observe.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "sketches/solve/covariance.h"
 
@@ -45,7 +45,7 @@ Measured measure(const Observation& o, int stroke, double footprint) {
     const int i = first + k;
     if (o.matches.views_of(i) < kPlacing) continue;
     const Eigen::Vector3d t = o.samples.tangent.col(i);
-    Eigen::Vector3d move = -o.matches.information[i].ldlt().solve(o.matches.slope.col(i));
+    Eigen::Vector3d move = -solve_symmetric(o.matches.information[i], o.matches.slope.col(i));
     move -= move.dot(t) * t;
     if (!move.allFinite() || move.norm() > kPlaceReach * footprint) continue;
     out.point.col(k) += move;

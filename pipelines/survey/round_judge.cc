@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "pipelines/survey/round_judge.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "edges/views/normals_along.h"
@@ -231,7 +231,7 @@ double RoundJudge::places_of_edge(const Sightings& seen, const Places& places) c
       const double r = (v.place_px - row.dot(shift)) / sigma, w = std::exp(-0.5 * r * r);
       H += w * row * row.transpose(), g += w * row * v.place_px;
     }
-    shift = H.ldlt().solve(g);
+    shift = solve_symmetric(H, g);
     if (!shift.allFinite()) return nats_at(Vector2d::Zero(), still);
   }
   // Of the places where it may be, those that agree with the views are a part (Laplace).

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Outlines beside strokes: those of a round wander over it from view to view.
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "edges/views/normals_along.h"
 #include "pipelines/survey/round_judge.h"
@@ -196,7 +196,7 @@ TwoEdges split_edges(const Sightings& seen, double share) {
       const Vector2d row = sorted[i].row.head<2>();
       H += row * row.transpose(), g += row * sorted[i].place_px;
     }
-    return H.ldlt().solve(g);
+    return solve_symmetric(H, g);
   };
   const size_t split = size_t(share * double(sorted.size()));
   return {meet(0, split), meet(split, sorted.size())};
@@ -219,7 +219,7 @@ double places_of_chamfer(const Sightings& seen, TwoEdges edges, double sigma, do
       H.block<2, 2>(2 * which, 2 * which) += w * row * row.transpose();
       g.segment<2>(2 * which) += w * row * v.place_px;
     }
-    const Eigen::Vector4d x = H.ldlt().solve(g);
+    const Eigen::Vector4d x = solve_symmetric(H, g);
     if (!x.allFinite()) return -INFINITY;
     edges = {x.head<2>(), x.tail<2>()};
   }
@@ -250,7 +250,7 @@ double places_of_two(const Sightings& seen, double sigma, double reach) {
       const double r = (v.place_px - row.dot(*other)) / sigma, w = std::exp(-0.5 * r * r);
       H += w * row * row.transpose(), g += w * row * v.place_px;
     }
-    other = H.ldlt().solve(g);
+    other = solve_symmetric(H, g);
   }
   // Of the places where it may be, those that agree with the views are a part (Laplace).
   const double occam = 2 * std::log(reach / sigma) + 0.5 * std::log(H.determinant());
@@ -324,7 +324,7 @@ std::vector<RoundJudge::RimFit> RoundJudge::rims_through(const Sightings& seen,
         const double r = (v.place_px - v.row.dot(fit.x)) / sigma, w = std::exp(-0.5 * r * r);
         H += w * v.row * v.row.transpose(), g += w * v.row * v.place_px;
       }
-      fit = {H.ldlt().solve(g), H / (sigma * sigma)};
+      fit = {solve_symmetric(H, g), H / (sigma * sigma)};
     }
     if (fit.x.allFinite() && fits(fit.x)) out.push_back(fit);
   }

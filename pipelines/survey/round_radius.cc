@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The cylinder that lines of sight touch along a stroke.
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "pipelines/survey/round_judge.h"
 
 namespace sketchsplat {
@@ -38,7 +38,7 @@ RoundJudge::RimFit RoundJudge::fit_rim(const std::vector<RoundSighting>& seen,
       H += w * row * row.transpose();
       g += w * row * (v.place_px - (free ? 0 : v.row.z() * radius_px));
     }
-    const Vector3d next = H.ldlt().solve(g);
+    const Vector3d next = solve_symmetric(H, g);
     if (!next.allFinite()) return {Vector3d::Zero(), H};
     fit = {free ? next : Vector3d(next.x(), next.y(), radius_px), H / (sigma * sigma)};
   }

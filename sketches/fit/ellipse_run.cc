@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/fit/ellipse_run.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/conic.h"
 #include "sketches/fit/refine.h"
 
@@ -61,7 +61,7 @@ Ellipse step(const Matrix3Xd& points, const Eigen::VectorXd& weights, const Elli
     }
   }
   H.diagonal().array() += lambda * H.trace() / 9;
-  const Vector9d x = H.selfadjointView<Eigen::Lower>().ldlt().solve(g);
+  const Vector9d x = solve_symmetric(H, g);
   return e + Eigen::Map<const Ellipse>(x.data());
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/fit/refine.h"
 #include "sketches/fit/right_singular.h"
 
@@ -16,9 +17,6 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-
-// Columns of V: the directions of largest to smallest spread.
-RightSingular<3> spread(const Matrix3Xd& centred) { return right_singular<3>(centred.transpose()); }
 
 // A circle by a point on it, the tangent, the direction to the centre and the plane's normal there,
 // and the curvature: all of these stay of order 1 while the centre runs off to infinity.
@@ -64,15 +62,15 @@ struct CircleResiduals {
 // Taubin's fit in the plane of the points by singular values (Chernov 2010, section 5.9):
 // a (x^2 + y^2) + b x + c y + d = 0, from which the frame nearest to the mean of the points.
 bool start_circle(const Matrix3Xd& points, double resolution, CurvedFrame* frame) {
-  const RightSingular<3> svd = spread(points);
-  if (!(svd.values[1] > (1e-9 + resolution) * svd.values[0])) return false;
-  const Vector3d e0 = svd.vectors.col(0), e1 = svd.vectors.col(1);
+  const Svd spread = svd(points.transpose());
+  if (!(spread.values[1] > (1e-9 + resolution) * spread.values[0])) return false;
+  const Vector3d e0 = spread.v.col(0), e1 = spread.v.col(1);
   const Eigen::VectorXd x = points.transpose() * e0, y = points.transpose() * e1;
   const Eigen::VectorXd z = x.cwiseAbs2() + y.cwiseAbs2();
   const double mean = z.mean(), weight = 2 * std::sqrt(mean);
   Eigen::MatrixX3d M(points.cols(), 3);
   M << (z.array() - mean).matrix() / weight, x, y;
-  const Vector3d v = right_singular<3>(M).vectors.col(2);
+  const Vector3d v = svd(M).v.col(2);
   double a = v[0] / weight, b = v[1], c = v[2], d = -a * mean;
   const double norm = std::sqrt(std::max(0.0, b * b + c * c - 4 * a * d));
   if (!(norm > 0)) return false;
@@ -151,7 +149,7 @@ LineFit fit_line(const Matrix3Xd& points, const Eigen::VectorXd& weights) {
   w /= w.sum();
   const Vector3d mean = n.points * w;
   const Matrix3Xd centred = n.points.colwise() - mean;
-  const Vector3d direction = spread(centred * w.cwiseSqrt().asDiagonal()).vectors.col(0);
+  const Vector3d direction = svd(w.cwiseSqrt().asDiagonal() * centred.transpose()).v.col(0);
   const Eigen::VectorXd along = centred.transpose() * direction;
   const Eigen::VectorXd distance =
       (centred - direction * along.transpose()).colwise().norm().transpose();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/conic.h"
 #include "sketches/fit/fit.h"
 #include "sketches/fit/refine.h"
@@ -35,7 +34,7 @@ void start_bezier(const Matrix3Xd& points, ControlPoints* c) {
     H += b * b.transpose();
     g += b * (points.col(i) - straight).transpose();
   }
-  const Eigen::Matrix<double, 2, 3> x = H.ldlt().solve(g);
+  const Eigen::Matrix<double, 2, 3> x = solve_symmetric(H, g);
   c->p[1] = p1 + x.row(0).transpose();
   c->p[2] = p2 + x.row(1).transpose();
 }
@@ -48,10 +47,10 @@ bool axes_of_conic(const Eigen::Matrix<double, 6, 1>& k, Eigen::Vector2d* centre
   if (!(Q.determinant() > 0)) return false;
   *centre = -0.5 * Q.inverse() * Eigen::Vector2d(k[3], k[4]);
   const double f = k[5] + 0.5 * (k[3] * centre->x() + k[4] * centre->y());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(Q);
-  const Eigen::Vector2d squared = -f * eigen.eigenvalues().cwiseInverse();
+  const auto eigen = eigen_symmetric(Q);
+  const Eigen::Vector2d squared = -f * eigen.values.cwiseInverse();
   if (!(squared.minCoeff() > 0) || !squared.allFinite()) return false;
-  *semi_axes = eigen.eigenvectors() * squared.cwiseSqrt().asDiagonal();
+  *semi_axes = eigen.vectors * squared.cwiseSqrt().asDiagonal();
   return true;
 }
 
@@ -62,16 +61,16 @@ bool direct_ellipse(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Eigen::V
   D1 << x.cwiseAbs2(), x.cwiseProduct(y), y.cwiseAbs2();
   D2 << x, y, Eigen::VectorXd::Ones(x.size());
   const Matrix3d S1 = D1.transpose() * D1, S2 = D1.transpose() * D2, S3 = D2.transpose() * D2;
-  const Matrix3d T = -S3.ldlt().solve(S2.transpose());
+  const Matrix3d T = -solve_symmetric(S3, S2.transpose());
   const Matrix3d M = S1 + S2 * T;
   Matrix3d reduced;
   reduced << M.row(2) / 2, -M.row(1), M.row(0) / 2;
   if (!reduced.allFinite()) return false;
-  const Eigen::EigenSolver<Matrix3d> eigen(reduced);
+  const GeneralEigen eigen = eigen_general(reduced);
   double best = 0;
   Eigen::Matrix<double, 6, 1> conic;
   for (int i = 0; i < 3; ++i) {  // exactly one has a positive discriminant, rounding apart
-    const Vector3d v = eigen.eigenvectors().col(i).real();
+    const Vector3d v = eigen.vectors.col(i).real();
     const double discriminant = 4 * v[0] * v[2] - v[1] * v[1];
     if (!(discriminant > best)) continue;
     best = discriminant;
@@ -83,11 +82,11 @@ bool direct_ellipse(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Eigen::V
 }  // namespace
 
 bool start_ellipse(const Normalised& n, ControlPoints* c) {
-  const RightSingular<3> svd = right_singular<3>(n.points.transpose());
-  if (!(svd.values[1] > (1e-8 + 10 * n.resolution) * svd.values[0])) return false;
-  const Eigen::Matrix<double, 3, 2> plane = svd.vectors.leftCols(2);
+  const Svd spread = svd(n.points.transpose());
+  if (!(spread.values[1] > (1e-8 + 10 * n.resolution) * spread.values[0])) return false;
+  const Eigen::Matrix<double, 3, 2> plane = spread.v.leftCols(2);
   // Both directions to the same spread first: the direct fit is not good at slender points.
-  const Eigen::Vector2d unit = svd.values.head(2) / std::sqrt(double(n.points.cols()));
+  const Eigen::Vector2d unit = spread.values.head(2) / std::sqrt(double(n.points.cols()));
   const Eigen::Matrix2Xd flat = unit.cwiseInverse().asDiagonal() * (plane.transpose() * n.points);
   Eigen::Vector2d centre;
   Eigen::Matrix2d axes;

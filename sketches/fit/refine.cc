@@ -3,9 +3,9 @@
 
 #include <ceres/jet.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
 
@@ -80,7 +80,7 @@ Vector12d step(const Matrix12d& H, const Vector12d& g, const RefineOptions& opti
       A(i, i) = 1;
       b[i] = 0;
     }
-  return A.ldlt().solve(b);
+  return solve_symmetric(A, b);
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/fit/run_fit.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/closest.h"
 #include "sketches/curve/conic.h"
 #include "sketches/fit/ellipse_run.h"
@@ -22,8 +20,8 @@ RunFit line_through(const Matrix3Xd& p) {
   RunFit out;
   const Vector3d c = p.rowwise().mean();
   const Matrix3Xd q = p.colwise() - c;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(q * q.transpose());
-  Vector3d u = es.eigenvectors().col(2);
+  const auto es = eigen_symmetric(q * q.transpose());
+  Vector3d u = es.vectors.col(2);
   if (u.dot(p.col(p.cols() - 1) - p.col(0)) < 0) u = -u;
   double lo = 1e300, hi = -1e300;
   out.distance.resize(p.cols());
@@ -53,9 +51,9 @@ RunCircle circle_through(const Matrix3Xd& p, const Matrix3Xd& t) {
   const double spread = std::sqrt(q.squaredNorm() / q.cols());
   if (!(spread > 0)) return fit;
   const Eigen::Matrix3d M = q * q.transpose() / (spread * spread) + t * t.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(M);
-  fit.normal = es.eigenvectors().col(0);
-  const Vector3d x = es.eigenvectors().col(2), y = fit.normal.cross(x);
+  const auto es = eigen_symmetric(M);
+  fit.normal = es.vectors.col(0);
+  const Vector3d x = es.vectors.col(2), y = fit.normal.cross(x);
   Eigen::MatrixXd A(p.cols(), 3);
   Eigen::VectorXd b(p.cols());
   for (int i = 0; i < p.cols(); ++i) {
@@ -63,7 +61,7 @@ RunCircle circle_through(const Matrix3Xd& p, const Matrix3Xd& t) {
     A.row(i) << 2 * u, 2 * v, 1;
     b[i] = u * u + v * v;
   }
-  Vector3d s = A.colPivHouseholderQr().solve(b);
+  Vector3d s = least_squares(A, b);
   double r = std::sqrt(std::max(0.0, s[2] + s[0] * s[0] + s[1] * s[1]));
   for (int it = 0; it < 8; ++it) {
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
@@ -75,7 +73,7 @@ RunCircle circle_through(const Matrix3Xd& p, const Matrix3Xd& t) {
       H += j * j.transpose();
       g += j * (d - r);
     }
-    const Vector3d step = (H + 1e-12 * Eigen::Matrix3d::Identity()).ldlt().solve(g);
+    const Vector3d step = solve_symmetric(H + 1e-12 * Eigen::Matrix3d::Identity(), g);
     s[0] -= step[0], s[1] -= step[1], r -= step[2];
   }
   fit.centre = c + spread * (s[0] * x + s[1] * y);
@@ -145,7 +143,7 @@ RunFit cubic_through(const Matrix3Xd& p) {
       const double s = 1 - t[i];
       B.row(i) << s * s * s, 3 * s * s * t[i], 3 * s * t[i] * t[i], t[i] * t[i] * t[i];
     }
-    c = B.colPivHouseholderQr().solve(p.transpose()).transpose();
+    c = least_squares(B, p.transpose()).transpose();
     for (int i = 0; i < n; ++i) {  // one Newton step towards the closest parameter
       const double s = 1 - t[i];
       const Vector3d q = c * B.row(i).transpose();

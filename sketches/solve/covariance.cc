@@ -3,11 +3,11 @@
 
 #include <ceres/jet.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 #include "sketches/curve/curve.h"
 
@@ -86,12 +86,12 @@ struct Normal {
 };
 
 void invert(Normal* n) {
-  const Eigen::SelfAdjointEigenSolver<Matrix12> es(n->A);
-  const double least = kRank * es.eigenvalues()[11];
+  const auto es = eigen_symmetric(n->A);
+  const double least = kRank * es.values[11];
   for (int k = 0; k < 12; ++k) {
-    const double value = es.eigenvalues()[k];
+    const double value = es.values[k];
     if (!(value > least)) continue;
-    n->inverse += es.eigenvectors().col(k) * es.eigenvectors().col(k).transpose() / value;
+    n->inverse += es.vectors.col(k) * es.vectors.col(k).transpose() / value;
     ++n->rank;
   }
 }
@@ -127,9 +127,7 @@ double largest_sigma(StrokeKind kind, const ControlPoints& c, const SampleLayout
   for (int k = 0; k < places + 2; ++k) {  // both ends, too
     const double t = k == places ? 0 : k == places + 1 ? 1 : layout.t[first + k * n / places];
     const Matrix3x12 J = jacobian_across(kind, c, t);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(J * covariance * J.transpose(),
-                                                            Eigen::EigenvaluesOnly);
-    largest = std::max(largest, es.eigenvalues()[2]);
+    largest = std::max(largest, eigenvalues_symmetric(J * covariance * J.transpose())[2]);
   }
   return std::sqrt(largest);
 }

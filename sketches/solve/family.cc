@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/solve/family.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/curve.h"
 #include "sketches/solve/similarity.h"
 
@@ -341,8 +341,7 @@ void measure_spread(double extent, Family* family) {
   family->covariance = (1 + 1.0 / n) * (1 - shrink) * sample;
   family->covariance.diagonal() += (1 + 1.0 / n) * shrink * sample.diagonal();
   family->covariance.diagonal().array() += novelty * novelty;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> es(sample, Eigen::EigenvaluesOnly);
-  family->modes = es.eigenvalues()
+  family->modes = eigenvalues_symmetric(sample)
                       .reverse()
                       .head(std::min<Eigen::Index>(n - 1, sample.rows()))
                       .cwiseMax(0)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sketches/solve/gaussian.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 
@@ -49,15 +50,15 @@ VectorXd Gaussian::observe(const Rows& rows, const VectorXd& residual, double si
   spread.noalias() -= taken_.topLeftCorner(size(), count_) * w.transpose();
   MatrixXd s = rows * spread;
   s.diagonal().array() += sigma * sigma;
-  const Eigen::LLT<MatrixXd> llt(s);
-  if (llt.info() != Eigen::Success) return VectorXd::Zero(size());
+  const Cholesky root(s);
+  if (!root.ok()) return VectorXd::Zero(size());
   const int k = int(rows.rows());
   if (count_ + k > taken_.cols())
     taken_.conservativeResize(Eigen::NoChange, std::max<int>(count_ + k, 2 * int(taken_.cols())));
   taken_.middleCols(count_, k).setZero();
-  taken_.block(0, count_, size(), k) = llt.matrixL().solve(spread.transpose()).transpose();
+  taken_.block(0, count_, size(), k) = root.whitened(spread.transpose()).transpose();
   count_ += k;
-  return -spread * llt.solve(residual);
+  return -spread * root.solve(residual);
 }
 
 }  // namespace sketchsplat

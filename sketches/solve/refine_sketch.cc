@@ -3,11 +3,11 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/curve.h"
 #include "sketches/graph/smooth_joint.h"
 #include "sketches/solve/relation_cost.h"
@@ -80,12 +80,12 @@ ceres::CostFunction* make_cost(int count, SampleResidual* residual) {
 // information = root^T root; target = the sample's place of least cost.
 void factor(const Eigen::Matrix3d& information, const Eigen::Vector3d& slope,
             const Eigen::Vector3d& position, SampleResidual* out) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(information);
-  const Eigen::Vector3d values = es.eigenvalues().cwiseMax(0);
-  out->root = values.cwiseSqrt().asDiagonal() * es.eigenvectors().transpose();
-  Eigen::Vector3d move = es.eigenvectors().transpose() * slope;
+  const auto es = eigen_symmetric(information);
+  const Eigen::Vector3d values = es.values.cwiseMax(0);
+  out->root = values.cwiseSqrt().asDiagonal() * es.vectors.transpose();
+  Eigen::Vector3d move = es.vectors.transpose() * slope;
   for (int k = 0; k < 3; ++k) move[k] = values[k] > 1e-6 * values[2] ? -move[k] / values[k] : 0;
-  out->target = position + es.eigenvectors() * move;
+  out->target = position + es.vectors * move;
 }
 
 double cost_of(const Sketch& sketch, const SampleLayout& layout, const Samples& before,

@@ -2,7 +2,6 @@
 #include "sketches/solve/similarity.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include "sketches/solve/covariance.h"
 
@@ -11,13 +10,6 @@ namespace sketchsplat {
 Similarity Similarity::inverse() const {
   const Eigen::Matrix3d back = rotation.transpose();
   return {1 / scale, back, -(back * translation) / scale};
-}
-
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-  return u * svd.matrixV().transpose();
 }
 
 Eigen::Matrix3d rotation_about(const Eigen::Vector3d& angle) {

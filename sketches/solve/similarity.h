@@ -23,9 +23,6 @@ struct Similarity {
   Similarity inverse() const;
 };
 
-/// Nearest to the given matrix in the least-squares sense, det +1.
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
-
 /// exp of the cross product with a vector [rad].
 Eigen::Matrix3d rotation_about(const Eigen::Vector3d& angle);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "topology/brep/geometry.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <GeomConvert.hxx>
 #include <Geom_BSplineCurve.hxx>
@@ -19,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
 #include "sketches/io/step_file.h"
@@ -93,8 +93,7 @@ Vector3d sphere_axis(const Surface& surface, const std::vector<Vector3d>& border
     for (const Vector3d& p : border) mean += p / double(border.size());
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Vector3d& p : border) spread += (p - mean) * (p - mean).transpose();
-    const Eigen::Matrix3d principal =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+    const Eigen::Matrix3d principal = eigen_symmetric(spread).vectors;
     for (int k = 0; k < 3; ++k) candidates.push_back(principal.col(k));
   }
   Vector3d best = surface.axis;

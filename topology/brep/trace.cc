@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/curve.h"
 #include "topology/brep/geometry.h"
 
@@ -44,7 +45,7 @@ Vector3d meeting_near(const Surface& a, const Surface& b, Vector3d p, double ste
     Eigen::Matrix<double, 2, 3> slope;
     slope << gradient(a, p, step).transpose(), gradient(b, p, step).transpose();
     const Eigen::Vector2d off(distance_from(a, p), distance_from(b, p));
-    p -= slope.completeOrthogonalDecomposition().solve(off);
+    p -= slope.transpose() * solve_symmetric(slope * slope.transpose(), off);
   }
   return p;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/conic.h"
 #include "sketches/fit/ellipse_run.h"
 #include "sketches/fit/fit.h"
@@ -29,9 +30,9 @@ std::optional<Principal> principal(const Run& run) {
   const Eigen::Matrix3Xd centred = run.position.colwise() - p.mean;
   const Eigen::Matrix3d scatter = centred * run.weight.asDiagonal() * centred.transpose() / total;
   if (!scatter.allFinite() || !(scatter.trace() > 0)) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-  p.value = solver.eigenvalues();
-  p.axis = solver.eigenvectors();
+  const auto solver = eigen_symmetric(scatter);
+  p.value = solver.values;
+  p.axis = solver.vectors;
   return p;
 }
 
@@ -48,7 +49,7 @@ bool circle_in_plane(const Eigen::Matrix2Xd& q, const VectorXd& w, Vector3d* cir
     a += w[k] * row * row.transpose();
     b += w[k] * row * q.col(k).squaredNorm();
   }
-  const Vector3d s = a.ldlt().solve(b);
+  const Vector3d s = solve_symmetric(a, b);
   const double r2 = s[2] + 0.25 * s.head<2>().squaredNorm();
   if (!s.allFinite() || !(r2 > 0)) return false;
   *circle = Vector3d(s[0] / 2, s[1] / 2, std::sqrt(r2));
@@ -63,7 +64,7 @@ bool circle_in_plane(const Eigen::Matrix2Xd& q, const VectorXd& w, Vector3d* cir
       a += w[k] * row * row.transpose();
       b -= w[k] * row * (n - (*circle)[2]);
     }
-    const Vector3d step = a.ldlt().solve(b);
+    const Vector3d step = solve_symmetric(a, b);
     if (!step.allFinite() || !(step.norm() < (*circle)[2])) break;
     *circle += step;
     if (step.norm() < 1e-13 * (*circle)[2]) break;
@@ -87,7 +88,7 @@ bool solve_controls(const Run& points, const VectorXd& t, PlainCurve* curve) {
     a += points.weight[k] * row * row.transpose();
     b += points.weight[k] * row * points.position.col(k).transpose();
   }
-  const Eigen::MatrixXd x = a.ldlt().solve(b);
+  const Eigen::MatrixXd x = solve_symmetric(a, b);
   if (!x.allFinite()) return false;
   for (int k = 0; k < n; ++k) curve->p[k] = x.row(k).transpose();
   return true;
@@ -302,12 +303,10 @@ std::optional<PlainCurve> refit_elliptic_arc(const std::vector<Run>& runs, doubl
 }
 
 PlainCurve with_principal_axes(const PlainCurve& ellipse) {
-  Eigen::Matrix<double, 3, 2> m;
-  m << ellipse.p[1], ellipse.p[2];
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 3, 2>> svd(m, Eigen::ComputeFullU);
+  const EllipseAxes axes = principal_axes(ellipse.p[1], ellipse.p[2]);
   PlainCurve out = ellipse;
-  out.p[1] = svd.matrixU().col(0) * svd.singularValues()[0];
-  out.p[2] = svd.matrixU().col(1) * svd.singularValues()[1];
+  out.p[1] = axes.major;
+  out.p[2] = axes.minor;
   return out;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "topology/faces/find_planes.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -103,12 +103,11 @@ class PlaneFinder {
     Moments m;
     for (const int s : members) m += moments_[s];
     const Vector3d mean = m.sum / m.weight;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(m.square / m.weight -
-                                                         mean * mean.transpose());
+    const auto solver = eigen_symmetric(m.square / m.weight - mean * mean.transpose());
     Plane plane;
     plane.origin = centre_ + mean;
-    plane.normal = solver.eigenvectors().col(0).normalized();
-    plane.x = solver.eigenvectors().col(2).normalized();
+    plane.normal = solver.vectors.col(0).normalized();
+    plane.x = solver.vectors.col(2).normalized();
     plane.y = plane.normal.cross(plane.x);
     for (const int s : members)
       if (!holds(plane, s)) return std::nullopt;

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "datasets/types/dense.h"
 #include "topology/core/description.h"
 #include "topology/core/end_clusters.h"
 #include "topology/core/refit.h"
@@ -49,12 +50,11 @@ Vector3d corner(const std::vector<EndLine>& lines, const std::vector<Vector3d>& 
     normal += l.weight / total * across;
     pull += l.weight / total * (across * (l.point - mean));
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal);
+  const auto solver = eigen_symmetric(normal);
   Vector3d step = Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
-    const Vector3d axis = solver.eigenvectors().col(k);
-    if (solver.eigenvalues()[k] >= kLeastInformation)
-      step += axis * (axis.dot(pull) / solver.eigenvalues()[k]);
+    const Vector3d axis = solver.vectors.col(k);
+    if (solver.values[k] >= kLeastInformation) step += axis * (axis.dot(pull) / solver.values[k]);
   }
   double share = 1;
   for (const Vector3d& m : members) {

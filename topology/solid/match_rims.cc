@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "topology/solid/match_rims.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/closest.h"
 #include "sketches/curve/curve.h"
 
@@ -122,10 +122,10 @@ class Matcher {
       }
     chain->centre = chain->places.rowwise().mean();
     const Matrix3Xd off = chain->places.colwise() - chain->centre;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(off * off.transpose());
-    chain->normal = spread.eigenvectors().col(0);
+    const auto spread = eigen_symmetric(off * off.transpose());
+    chain->normal = spread.vectors.col(0);
     // A line has no plane, and what is in none is no outline.
-    return spread.eigenvalues()[1] > off.cols() * tolerance_ * tolerance_ &&
+    return spread.values[1] > off.cols() * tolerance_ * tolerance_ &&
            (chain->normal.transpose() * off).cwiseAbs().maxCoeff() <= tolerance_;
   }
 

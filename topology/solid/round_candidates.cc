@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "datasets/types/dense.h"
 #include "sketches/curve/curve.h"
 #include "topology/solid/round_families.h"
 
@@ -116,7 +117,7 @@ class Finder {
           normal += row * row.transpose();
           right += row * p.squaredNorm();
         }
-    const Eigen::Vector4d x = normal.ldlt().solve(right);
+    const Eigen::Vector4d x = solve_symmetric(normal, right);
     const double r2 = x[3] + x.head<3>().squaredNorm();
     return {SurfaceKind::kSphere, about + x.head<3>(), rims_[i].axis, std::sqrt(std::max(0.0, r2))};
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/types/dense.h"
 #include "sketches/fit/right_singular.h"
 
 namespace sketchsplat {
@@ -83,7 +84,7 @@ Eigen::Matrix<double, 6, 1> fit_conic(const Eigen::Matrix2Xd& q) {
     const double x = q(0, i), y = q(1, i);
     rows.row(i) << x * x, x * y, y * y, x, y, 1;
   }
-  return right_singular<6>(rows).vectors.col(5);
+  return svd(rows).v.col(5);
 }
 
 // Half-axes as columns, the longer one first; false if the conic is no ellipse.
@@ -95,18 +96,19 @@ bool half_axes(const Eigen::Matrix<double, 6, 1>& k, Eigen::Vector2d* centre,
   const Eigen::Vector2d b(k[3] / 2, k[4] / 2);
   *centre = -A.inverse() * b;
   const double level = -(k[5] + b.dot(*centre));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(A / level);
-  if (!(solver.eigenvalues().minCoeff() > 0)) return false;
-  *axes = solver.eigenvectors() * solver.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal();
+  const auto solver = eigen_symmetric(A / level);
+  if (!(solver.values.minCoeff() > 0)) return false;
+  *axes = solver.vectors * solver.values.cwiseSqrt().cwiseInverse().asDiagonal();
   return true;
 }
 
 bool is_elliptic(const Matrix3Xd& p, double tolerance, CurveShape* shape) {
   const Vector3d mean = p.rowwise().mean();
   const Matrix3Xd from = p.colwise() - mean;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(from * from.transpose(), Eigen::ComputeFullU);
-  if ((svd.matrixU().col(2).transpose() * from).cwiseAbs().maxCoeff() > tolerance) return false;
-  const Eigen::Matrix<double, 3, 2> plane = svd.matrixU().leftCols<2>();
+  const auto spread = eigen_symmetric(from * from.transpose());
+  if ((spread.vectors.col(0).transpose() * from).cwiseAbs().maxCoeff() > tolerance) return false;
+  Eigen::Matrix<double, 3, 2> plane;
+  plane << spread.vectors.col(2), spread.vectors.col(1);
   const double scale = from.colwise().norm().maxCoeff();
   Eigen::Vector2d centre;
   Eigen::Matrix2d axes;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/synthetic/render/pose_error.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/synthetic/render/noise.h"
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -121,7 +121,7 @@ void undo_similarity(const std::vector<View>& views, const Eigen::Matrix3Xd& poi
     H += J.transpose() * J;
     g += J.transpose() * shift;
   });
-  const Eigen::Matrix<double, 7, 1> step = -H.ldlt().solve(g);
+  const Eigen::Matrix<double, 7, 1> step = -solve_symmetric(H, g);
   const Matrix3d R = rotation(step.segment<3>(3));
   const double scale = 1 + step[6];
   for (View& view : *err) {

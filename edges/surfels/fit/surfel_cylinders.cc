@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "edges/surfels/fit/surfel_cylinders.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +10,7 @@
 #include <utility>
 
 #include "datasets/neighbours/kd_tree.h"
+#include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 #include "datasets/types/widest_gap.h"
 
@@ -256,7 +255,7 @@ class Cylinders {
             (Vector5() << -a, -b, -h * a, -h * b, -1).finished() / spacing_);
         add(kTilt * n.dot(c->axis), kTilt * (Vector5() << 0, 0, n.dot(u), n.dot(v), 0).finished());
       }
-      const Vector5 x = H.ldlt().solve(-g);
+      const Vector5 x = solve_symmetric(H, -g);
       if (!x.allFinite()) return false;
       c->point += x[0] * u + x[1] * v;
       c->axis = (c->axis + x[2] * u + x[3] * v).normalized();
@@ -299,7 +298,7 @@ class Cylinders {
       basis.row(k).tail<5>() = c.height(p) / c.radius * basis.row(k).head<5>();
       leans[k] = c.axis.dot(set_.normal(on[k]));
     }
-    const Eigen::VectorXd steady = basis * basis.colPivHouseholderQr().solve(leans);
+    const Eigen::VectorXd steady = basis * least_squares(basis, leans);
     return steady.norm() / std::sqrt(double(on.size()));
   }
 

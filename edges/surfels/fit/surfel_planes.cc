@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "edges/surfels/fit/surfel_planes.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -90,10 +90,10 @@ class Regions {
       const Vector3d d = center_.col(i) - p.middle;
       scatter += d * d.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> es(scatter);
+    const auto es = eigen_symmetric(scatter);
     // Of a narrow strip the places say too little about its turn.
-    const double width = std::sqrt(12 * es.eigenvalues()[1] / region.size());
-    p.normal = width > kStrip * spacing_ ? Vector3d(es.eigenvectors().col(0)) : mean;
+    const double width = std::sqrt(12 * es.values[1] / region.size());
+    p.normal = width > kStrip * spacing_ ? Vector3d(es.vectors.col(0)) : mean;
     if (p.normal.dot(mean) < 0) p.normal = -p.normal;
     return p;
   }
@@ -128,19 +128,19 @@ class Regions {
       A += b * b.transpose();
       B += b * Eigen::RowVector2d(normal_.col(i).dot(u), normal_.col(i).dot(v));
     }
-    const Eigen::Matrix<double, 3, 2> fit = A.ldlt().solve(B);
+    const Eigen::Matrix<double, 3, 2> fit = solve_symmetric(A, B);
     const Eigen::Matrix2d slope = fit.bottomRows<2>();  // d normal / d place
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> es((slope + slope.transpose()) / 2);
+    const auto es = eigen_symmetric((slope + slope.transpose()) / 2);
     double most = 0;
     for (int k = 0; k < 2; ++k) {
-      const Eigen::Vector2d axis = es.eigenvectors().col(k);
+      const Eigen::Vector2d axis = es.vectors.col(k);
       double lo = 1e300, hi = -1e300;
       for (const int i : region) {
         const Vector3d d = center_.col(i) - plane.middle;
         const double s = axis.x() * d.dot(u) + axis.y() * d.dot(v);
         lo = std::min(lo, s), hi = std::max(hi, s);
       }
-      most = std::max(most, std::abs(es.eigenvalues()[k]) * (hi - lo));
+      most = std::max(most, std::abs(es.values[k]) * (hi - lo));
     }
     return most > options_.bend_deg * kDegree;
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "edges/surfels/model/surfel_set.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 #include "edges/surfels/model/surfel_shading.h"
 
@@ -186,9 +186,9 @@ DensityChange steep_split(const SurfelSet& set, const Eigen::Matrix3Xd& splittin
     if (is_faint(set, i, weight, min_alpha, min_weight)) continue;
     Eigen::Matrix2d S;
     S << splitting(0, i), splitting(1, i), splitting(1, i), splitting(2, i);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(S);
-    steepness[i] = -eigen.eigenvalues()[0];
-    axis.col(i) = eigen.eigenvectors().col(0);
+    const auto eigen = eigen_symmetric(S);
+    steepness[i] = -eigen.values[0];
+    axis.col(i) = eigen.vectors.col(0);
   }
   Halves halves;
   for (const int i : highest(steepness, most)) {
@@ -225,8 +225,7 @@ std::vector<std::pair<int, int>> neighbour_pairs(const SurfelSet& set, int count
   const int n = set.size();
   if (n == 0) return {};
   Eigen::Matrix3Xd normal(3, n);
-  for (int i = 0; i < n; ++i)
-    normal.col(i) = set.normal(i);
+  for (int i = 0; i < n; ++i) normal.col(i) = set.normal(i);
   const Eigen::Matrix3Xd p = set.values.middleRows<3>(SurfelSet::kCenter);
   const double least = std::cos(max_angle_deg * M_PI / 180);
   const Bins bins(p, reach);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "edges/surfels/model/surfel_shading.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -54,8 +55,8 @@ Eigen::Matrix3Xd shade(const SurfelCloud& cloud, const Eigen::Matrix3Xd& albedo,
   Eigen::Matrix3Xd color(3, cloud.size());
   for (int i = 0; i < cloud.size(); ++i) {
     const Basis b = shading_basis(surfel_normal(cloud.rotation.col(i)));
-    color.col(i) = albedo.col(i) *
-                   b.dot(illumination.light * place(illumination, cloud.center.col(i)));
+    color.col(i) =
+        albedo.col(i) * b.dot(illumination.light * place(illumination, cloud.center.col(i)));
   }
   return color;
 }
@@ -78,8 +79,8 @@ void shade_backward(const SurfelCloud& cloud, const Eigen::Matrix3Xd& albedo,
     *by_light += by_shade * b * q.transpose();
     const Eigen::Vector3d to_normal = by_shade * by_normal.transpose() * l;
     gradient->rotation.col(i) += by_rotation.transpose() * to_normal;
-    gradient->center.col(i) += by_shade / illumination.extent *
-                               (illumination.light.rightCols<3>().transpose() * b);
+    gradient->center.col(i) +=
+        by_shade / illumination.extent * (illumination.light.rightCols<3>().transpose() * b);
   }
 }
 
@@ -102,7 +103,7 @@ Illumination fit_illumination(const SurfelCloud& cloud, const Eigen::VectorXd& g
   }
   const double total = weight.sum();
   for (int k = 0; k < kUnknowns; ++k) A(k, k) += (k < kShadingTerms ? 1e-4 : 3e-3) * total + 1e-12;
-  const Eigen::Matrix<double, kUnknowns, 1> x = A.selfadjointView<Eigen::Lower>().ldlt().solve(rhs);
+  const Eigen::Matrix<double, kUnknowns, 1> x = solve_symmetric(A, rhs);
   out.light = Eigen::Map<const Light>(x.data());
   return out;
 }

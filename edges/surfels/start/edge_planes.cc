@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "edges/surfels/start/edge_planes.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 
 namespace sketchsplat {
@@ -96,8 +96,8 @@ class EdgePlanes {
     const Eigen::Matrix3Xd p = edges_.position(Eigen::all, points);
     const Vector3d mean = p.rowwise().mean();
     const Eigen::Matrix3Xd q = p.colwise() - mean;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(q * q.transpose());
-    return EdgePlane(Vector3d(es.eigenvectors().col(0)), mean);
+    const auto es = eigen_symmetric(q * q.transpose());
+    return EdgePlane(Vector3d(es.vectors.col(0)), mean);
   }
 
   // The same as one of these?
@@ -126,8 +126,8 @@ class EdgePlanes {
   // Faces have edges of more than one direction, planes of two parallel edges do not.
   double weight(const std::vector<int>& points) const {
     const Eigen::Matrix3Xd t = edges_.tangent(Eigen::all, points);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(t * t.transpose());
-    const Vector3d v = es.eigenvalues();
+    const auto es = eigen_symmetric(t * t.transpose());
+    const Vector3d v = es.values;
     return kParallel + (1 - kParallel) * std::min(1.0, 4 * v[1] / (v[1] + v[2]));
   }
 
