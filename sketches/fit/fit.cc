@@ -10,7 +10,6 @@
 
 #include "datasets/types/dense.h"
 #include "sketches/fit/refine.h"
-#include "sketches/fit/right_singular.h"
 
 namespace sketchsplat {
 namespace {

@@ -6,7 +6,6 @@
 #include "sketches/curve/conic.h"
 #include "sketches/fit/fit.h"
 #include "sketches/fit/refine.h"
-#include "sketches/fit/right_singular.h"
 
 namespace sketchsplat {
 namespace {

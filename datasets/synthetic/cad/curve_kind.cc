@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "datasets/types/dense.h"
-#include "sketches/fit/right_singular.h"
 
 namespace sketchsplat {
 namespace {
