@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "datasets/types/dense.h"
 #include "edges/image/detect.h"
 #include "edges/image/pull_of_blur.h"
 #include "edges/views/link.h"
@@ -183,7 +184,7 @@ TEST(Match, QuadraticTellsTheOffsetOfALineAcrossIt) {
     const Eigen::Matrix3d H = m.information[i] + 1e-3 * m.information[i].trace() *
                                                      Eigen::Vector3d::UnitX() *
                                                      Eigen::RowVector3d::UnitX();
-    const Eigen::Vector3d move = -H.ldlt().solve(Eigen::Vector3d(m.slope.col(i)));
+    const Eigen::Vector3d move = -solve_symmetric(H, m.slope.col(i));
     EXPECT_LT((move + offset).norm(), 2e-4);
   }
 }

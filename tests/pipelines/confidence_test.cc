@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
 
+#include "datasets/types/dense.h"
 #include "pipelines/adjust/polish.h"
 #include "sketches/solve/covariance.h"
 #include "tests/support/strokes.h"
@@ -98,10 +98,10 @@ TEST(Evidence, CovarianceForetellsTheScatterOfPolishingUnderNoise) {
   }
   for (int i = 0; i < 3; ++i)
     for (size_t k = 0; k < places.size(); ++k) {
-      const Eigen::SelfAdjointEigenSolver<Matrix3d> is(scatter[i][k]);
+      const auto is = eigen_symmetric(scatter[i][k]);
       for (int way : {1, 2}) {  // 0 is along the curve
-        const Vector3d u = is.eigenvectors().col(way);
-        const double ratio = std::sqrt(u.dot(foretold[i][k] * u) / is.eigenvalues()[way]);
+        const Vector3d u = is.vectors.col(way);
+        const double ratio = std::sqrt(u.dot(foretold[i][k] * u) / is.values[way]);
         EXPECT_GT(ratio, 0.7) << kind_name(truth.strokes[i].kind) << " at " << places[k];
         EXPECT_LT(ratio, 1.4) << kind_name(truth.strokes[i].kind) << " at " << places[k];
       }

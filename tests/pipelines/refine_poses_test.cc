@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "datasets/readers/scene.h"
+#include "datasets/types/dense.h"
 #include "datasets/types/errors.h"
 #include "datasets/types/median.h"
 #include "pipelines/cameras/camera_unknowns.h"
@@ -64,7 +65,7 @@ double shape_error(const Sketch& found) {
       from.conservativeResize(3, from.cols() + 1), to.conservativeResize(3, to.cols() + 1);
       from.col(from.cols() - 1) = p, to.col(to.cols() - 1) = best;
     }
-  const Eigen::Matrix4d T = Eigen::umeyama(from, to, true);
+  const Eigen::Matrix4d T = similarity_between(from, to);
   double worst = 0;
   for (int i = 0; i < from.cols(); ++i)
     worst = std::max(worst, distance_to(truth, (T * from.col(i).homogeneous()).hnormalized()));

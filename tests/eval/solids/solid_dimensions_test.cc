@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -13,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "datasets/types/dense.h"
 #include "eval/solids/solid_tables.h"
 #include "sketches/curve/curve.h"
 #include "tests/eval/inspect/plate.h"
@@ -128,7 +128,7 @@ struct PlateFit {
       Eigen::MatrixXd j(r.size(), 12);
       for (int k = 0; k < 12; ++k)
         j.col(k) = (residuals(x + 1e-6 * VectorXd::Unit(12, k)) - r) / 1e-6;
-      x -= (j.transpose() * j).ldlt().solve(j.transpose() * r);
+      x -= least_squares(j, r);
     }
     return x;
   }
