@@ -2,9 +2,9 @@
 // EMAP's layout (ABC-NEF_Edge): meta_data.json, color/, edge_<detector>/.
 #include <filesystem>
 
-#include "datasets/io/json_file.h"
 #include "datasets/readers/format.h"
 #include "datasets/readers/frame.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -20,8 +20,7 @@ bool is_marked(const std::string& folder) {
 
 void read(const SceneSource& source, Scene* scene) {
   const std::string& folder = source.folder;
-  const nlohmann::json json = load_json(scene_file(folder));
-  const JsonValue root{&json, scene_file(folder), ""};
+  const JsonValue root = load_json(scene_file(folder));
   if (root.has("worldtogt")) {
     scene->gt_from_world = root["worldtogt"].matrix(4, 4);
     if (!scene->gt_from_world.allFinite()) root["worldtogt"].complain("finite numbers");

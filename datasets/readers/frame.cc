@@ -9,6 +9,7 @@
 #include "datasets/io/image_planes.h"
 #include "datasets/types/dense.h"
 #include "datasets/types/errors.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -119,7 +120,7 @@ void check_frame_count(const std::string& path, std::uint64_t count) {
 
 std::vector<JsonValue> frames_of(const JsonValue& root) {
   const JsonValue frames = root["frames"];
-  check_frame_count(root.path, frames.json->size());
+  check_frame_count(root.path, frames.size());
   return frames.elements();
 }
 

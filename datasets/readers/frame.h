@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "datasets/io/json_file.h"
 #include "datasets/readers/format.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 
 /// What a scene file says about one image, before it is checked.
 struct Frame {
-  std::string name;        ///< as the scene file calls the image, with folders
-  std::string image_path;  ///< empty if no such file was found
+  std::string name;         ///< as the scene file calls the image, with folders
+  std::string image_path;   ///< empty if no such file was found
   bool is_outside = false;  ///< the image lies where the scene may not reach: not looked for
-  ImageSize size;          ///< [px]; 0 x 0: ask the image
+  ImageSize size;           ///< [px]; 0 x 0: ask the image
   Eigen::Matrix3d intrinsics = Eigen::Matrix3d::Identity();      ///< pixel centres are integers
   Eigen::Matrix4d world_from_cam = Eigen::Matrix4d::Identity();  ///< axes of Camera
   Lens lens;

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "datasets/io/json_file.h"
 #include "datasets/readers/format.h"
 #include "datasets/readers/frame.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -54,8 +54,7 @@ Eigen::Matrix3d intrinsics_of(const JsonValue& root, const JsonValue& entry,
 
 void read(const SceneSource& source, Scene* scene) {
   const std::string& folder = source.folder;
-  const nlohmann::json json = load_json(scene_file(folder));
-  const JsonValue root{&json, scene_file(folder), ""};
+  const JsonValue root = load_json(scene_file(folder));
   for (const JsonValue& entry : frames_of(root)) {
     Frame frame;
     frame.name = entry["file_path"].text();

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <map>
 
-#include "datasets/io/json_file.h"
 #include "datasets/readers/format.h"
 #include "datasets/readers/frame.h"
 #include "datasets/types/errors.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -107,8 +107,7 @@ void warn_of_images_without_pose(const std::string& folder, const std::vector<st
 
 void read(const SceneSource& source, Scene* scene) {
   const std::string& folder = source.folder;
-  const nlohmann::json json = load_json(scene_file(folder));
-  const JsonValue root{&json, scene_file(folder), ""};
+  const JsonValue root = load_json(scene_file(folder));
   std::vector<std::string> used, without_file, without_mask;
   for (const JsonValue& entry : frames_of(root)) {
     const Values values{root, entry};

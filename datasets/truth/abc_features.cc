@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/types/errors.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -155,7 +155,7 @@ void set_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double lon
 
 void box_from_stats(const std::string& path, const std::string& id, AbcModel* model) {
   try {
-    const auto stats = parse_json_text<nlohmann::json>(read_text(path, "ABC statistics"), path);
+    const auto stats = parse_json<nlohmann::json>(read_text(path, "ABC statistics"), path);
     const auto box = stats.at(id).at("bbox").get<std::vector<double>>();
     if (box.size() < 9) throw InputError(path, "bbox of 9 numbers", std::to_string(box.size()));
     set_box({box[0], box[1], box[2]}, {box[3], box[4], box[5]}, std::max({box[6], box[7], box[8]}),

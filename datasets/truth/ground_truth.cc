@@ -15,7 +15,7 @@
 #include "datasets/types/errors.h"
 #include "sketches/curve/curve.h"
 #include "sketches/io/io.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -168,7 +168,7 @@ GroundTruth read_samples(const fs::path& file) {
 Eigen::Matrix3Xd points_of(const json& list, const std::string& path) {
   Eigen::Matrix3Xd points(3, list.size());
   for (size_t i = 0; i < list.size(); ++i) {
-    if (list[i].size() != 3) throw InputError(path, "points of 3 numbers", list[i].dump());
+    if (list[i].size() != 3) throw InputError(path, "points of 3 numbers", json_text(list[i]));
     for (int k = 0; k < 3; ++k) points(k, i) = list[i].at(k).get<double>();
   }
   if (points.cols() < 2) {
@@ -190,7 +190,8 @@ std::vector<int> visible_views_of(const json& item, Eigen::Index points, const s
   }
   std::vector<int> views;
   for (const double n : numbers) {
-    if (!(n >= 0 && n <= kMostViews)) throw InputError(path, "numbers of views", json(n).dump());
+    if (!(n >= 0 && n <= kMostViews))
+      throw InputError(path, "numbers of views", json_text(json(n)));
     views.push_back(int(n));
   }
   return views;
@@ -205,7 +206,8 @@ GroundTruth read_point_curves(const json& document, const std::string& path) {
   if (document.is_object() && document.contains("scale")) {
     truth.raw_scale = document.at("scale").get<double>();
     offset = points_of(json::array({document.at("offset"), document.at("offset")}), path).col(0);
-    if (!(truth.raw_scale > 0)) throw InputError(path, "scale above 0", document["scale"].dump());
+    if (!(truth.raw_scale > 0))
+      throw InputError(path, "scale above 0", json_text(document["scale"]));
   }
   std::vector<Eigen::Matrix3Xd> raw;
   for (const json& item : list) {

@@ -10,11 +10,10 @@
 #include "eval/inspect/csv_row.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/curve/curve_jacobian.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json number(double x) { return std::isfinite(x) ? Json(nine_digits(x)) : Json(); }
 
@@ -204,7 +203,7 @@ std::string inspection_json(const Inspection& inspection, const Nominal& nominal
                              {"kind", kind_name(inspection.measured.strokes[x.stroke].kind)},
                              {"length", number(x.length)},
                              {"beside", number(x.beside)}});
-  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(out, 1) + "\n";
 }
 
 std::string inspection_csv(const Inspection& inspection, const Nominal& nominal) {
@@ -289,7 +288,7 @@ std::string pieces_json(const Inspection& inspection, const Nominal& nominal, do
                         {"shift", row_major(shift)},
                         {"bend", row_major(bend)}});
     }
-  return Json{{"pieces", pieces}}.dump() + "\n";
+  return json_text(Json{{"pieces", pieces}}) + "\n";
 }
 
 std::string inspection_table(const Inspection& inspection, const Nominal& nominal,

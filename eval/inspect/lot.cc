@@ -7,11 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/inspect/csv_row.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -192,7 +191,7 @@ std::string lot_json(const std::vector<LotPart>& parts, const std::vector<LotRow
                             {"undecided", p.undecided}});
   out["rows"] = Json::array();
   for (const LotRow& r : rows) out["rows"].push_back(json_of(r));
-  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(out, 1) + "\n";
 }
 
 }  // namespace sketchsplat

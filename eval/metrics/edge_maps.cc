@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/io/json_file.h"
 #include "eval/metrics/nearest.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -62,8 +62,7 @@ EdgeMapScore score_edge_points(const Eigen::Matrix2Xd& points,
 }
 
 std::vector<Eigen::Matrix2Xd> read_edge_polylines(const std::string& path) {
-  const nlohmann::json json = load_json(path);
-  const JsonValue root{&json, path, ""};
+  const JsonValue root = load_json(path);
   std::vector<Eigen::Matrix2Xd> polylines;
   for (const JsonValue& line : root["polylines"].elements()) {
     const int n = int(line.elements().size());

@@ -15,7 +15,7 @@
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/io/io.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -32,9 +32,9 @@ void flatten(const json& value, const std::string& path, std::vector<double>* ou
     for (const json& item : value) flatten(item, path, out);
   } else if (value.is_number()) {
     out->push_back(value.get<double>());
-    if (!(std::abs(out->back()) < kLargest)) throw InputError(path, kPlaces, value.dump());
+    if (!(std::abs(out->back()) < kLargest)) throw InputError(path, kPlaces, json_text(value));
   } else {
-    throw InputError(path, "finite coordinates", value.dump());
+    throw InputError(path, "finite coordinates", json_text(value));
   }
 }
 

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "eval/metrics/csv.h"
+#include "sketches/io/json.h"
 
-using nlohmann::ordered_json;
+using Json;
 
 namespace sketchsplat {
 namespace {
@@ -29,15 +30,15 @@ std::string thousandths(double threshold) {
   return text;
 }
 
-ordered_json or_null(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(); }
+Json or_null(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
-void add_spread(const std::string& of, const Spread& spread, ordered_json* out) {
+void add_spread(const std::string& of, const Spread& spread, Json* out) {
   (*out)[of + "_median"] = or_null(1000 * spread.median);
   (*out)[of + "_p95"] = or_null(1000 * spread.p95);
   (*out)[of + "_worst"] = or_null(1000 * spread.worst);
 }
 
-void add_score(const Score& score, ordered_json* out) {
+void add_score(const Score& score, Json* out) {
   (*out)["samples"] = score.samples;
   (*out)["truth_samples"] = score.truth_samples;
   (*out)["acc"] = or_null(1000 * score.accuracy);
@@ -59,9 +60,8 @@ void add_score(const Score& score, ordered_json* out) {
   }
 }
 
-ordered_json json_of(const Structure& s, bool has_visibility) {
-  ordered_json out = {
-      {"strokes", s.strokes}, {"edges", s.edges}, {"matched", s.matched}, {"f", s.f}};
+Json json_of(const Structure& s, bool has_visibility) {
+  Json out = {{"strokes", s.strokes}, {"edges", s.edges}, {"matched", s.matched}, {"f", s.f}};
   out["strokes_per_edge"] = s.strokes_per_edge;
   out["precision"] = s.precision;
   out["recall"] = s.recall;
@@ -89,8 +89,8 @@ ordered_json json_of(const Structure& s, bool has_visibility) {
   return out;
 }
 
-ordered_json json_of(const std::vector<CurveScore>& curves) {
-  ordered_json out = ordered_json::array();
+Json json_of(const std::vector<CurveScore>& curves) {
+  Json out = Json::array();
   for (const CurveScore& c : curves) {
     out.push_back({{"name", c.name},
                    {"type", c.type},
@@ -101,7 +101,7 @@ ordered_json json_of(const std::vector<CurveScore>& curves) {
   return out;
 }
 
-ordered_json json_of(const SolidComparison& c) {
+Json json_of(const SolidComparison& c) {
   return {{"valid", c.valid},
           {"volume", c.volume},
           {"true_volume", c.true_volume},
@@ -119,8 +119,8 @@ ordered_json json_of(const SolidComparison& c) {
 
 bool has_structure(const Evaluation& e) { return e.has_curves && e.has_strokes; }
 
-ordered_json json_of(const Evaluation& e) {
-  ordered_json out;
+Json json_of(const Evaluation& e) {
+  Json out;
   out["protocol"] = protocol_name(e.protocol);
   out["prediction"] = e.prediction_path;
   out["ground_truth"] = e.truth_path;
@@ -136,12 +136,10 @@ ordered_json json_of(const Evaluation& e) {
   return out;
 }
 
-std::string text_of(const ordered_json& document) {
-  return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
+std::string text_of(const Json& document) { return json_text(document, 2) + "\n"; }
 
 // Numbers of the nested objects too, "fine.F5"; what is no number (null) becomes NaN.
-void flatten(const ordered_json& object, const std::string& prefix, NamedNumbers* out) {
+void flatten(const Json& object, const std::string& prefix, NamedNumbers* out) {
   for (const auto& [key, value] : object.items()) {
     if (value.is_object()) flatten(value, prefix + key + ".", out);
     if (value.is_number() || value.is_null()) {
@@ -254,12 +252,12 @@ NamedNumbers mean_of(const std::vector<NamedNumbers>& rows) {
 }
 
 std::string scenes_to_json(const std::vector<SceneEvaluation>& scenes) {
-  ordered_json out;
-  out["scenes"] = ordered_json::array();
+  Json out;
+  out["scenes"] = Json::array();
   std::vector<NamedNumbers> rows;
   int missing = 0;
   for (const SceneEvaluation& scene : scenes) {
-    ordered_json one = {{"scene", scene.name}, {"missing", scene.missing}};
+    Json one = {{"scene", scene.name}, {"missing", scene.missing}};
     one.update(json_of(scene.evaluation));
     out["scenes"].push_back(one);
     rows.push_back(numbers_of(scene.evaluation));

@@ -8,11 +8,11 @@
 #include "eval/inspect/csv_row.h"
 #include "eval/solids/solid_dimensions.h"
 #include "eval/solids/surface_errors.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Move = SurfaceMove;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -159,7 +159,7 @@ std::string surfaces_json(const SolidTables& tables) {
     row["views"] = s.views;
     out.push_back(row);
   }
-  return out.dump();
+  return json_text(out);
 }
 
 std::string dimensions_json(const SolidTables& tables) {
@@ -170,7 +170,7 @@ std::string dimensions_json(const SolidTables& tables) {
                    {"sigma", number(d.sigma)},
                    {"unit", d.unit},
                    {"faces", d.faces}});
-  return out.dump();
+  return json_text(out);
 }
 
 }  // namespace sketchsplat

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "sketches/io/json.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -244,7 +246,7 @@ std::string unknown_option(const std::vector<Field>& fields, const std::string& 
 }
 
 std::string fields_json(const std::vector<Field>& fields) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  Json json = Json::object();
   for (const Field& field : fields) {
     if (const auto* b = std::get_if<bool*>(&field.value))
       json[field.name] = **b;
@@ -255,7 +257,7 @@ std::string fields_json(const std::vector<Field>& fields) {
     else
       json[field.name] = text_of(field);
   }
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace sketchsplat

@@ -8,7 +8,7 @@
 #include "datasets/types/errors.h"
 #include "sketches/io/io.h"
 #include "sketches/io/io_solid.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace fs = std::filesystem;

@@ -11,14 +11,12 @@
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
 #include "pipelines/batch/thumbnail.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 constexpr char kName[] = "batch.json";
 
 // What of the evaluation is told: keys of `evaluate --json`, with their objects.
@@ -34,9 +32,7 @@ const std::vector<std::string> kScores = {"F5",
                                           "structure.strokes_per_edge",
                                           "structure.right_type"};
 
-std::string dump(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string dump(const Json& json) { return json_text(json, 1) + "\n"; }
 
 Json read_json(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

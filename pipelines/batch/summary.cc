@@ -10,11 +10,10 @@
 #include "eval/metrics/csv.h"
 #include "pipelines/base/version.h"
 #include "pipelines/pages/page.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kCounts = {"views",         "curves",  "lines",
                                           "arcs",          "circles", "ellipses",
@@ -88,9 +87,7 @@ Json json_of(const SceneRow& row) {
 }
 
 // Fit for pages, too.
-std::string dump(const Json& json) {
-  return without_tags(json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
+std::string dump(const Json& json) { return without_tags(json_text(json)); }
 
 // Row by row: all of them as one value would be many times as large as what is written.
 // `describe` is what stands for a row.
@@ -108,7 +105,7 @@ void write_json(std::ostream& out, const std::vector<SceneRow>& rows,
                {"failed", count(SceneRow::State::kFailed)},
                {"open", count(SceneRow::State::kOpen)}};
   head["mean"] = json_of(mean_scores(rows));
-  head["options"] = Json::parse(options_json);
+  head["options"] = parse_json<Json>(options_json);
   const std::string text = dump(head);
   out << text.substr(0, text.size() - 1) << ",\n\"scenes\":[";
   for (size_t i = 0; i < rows.size(); ++i) out << (i ? ",\n" : "\n") << dump(describe(rows[i]));

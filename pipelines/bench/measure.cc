@@ -18,12 +18,12 @@
 #include "pipelines/base/hash.h"
 #include "pipelines/bench/machine.h"
 #include "pipelines/command/cli.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string joined(const std::vector<std::string>& words) {
@@ -46,7 +46,11 @@ std::string identity_of_folder(const std::string& folder) {
 
 Json read_json(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  return Json::parse(in, nullptr, false);
+  try {
+    return parse_json<Json>(in, path);
+  } catch (const std::exception&) {
+    return {};
+  }
 }
 
 // All numbers of an object; those of objects in it are called OUTER_INNER.

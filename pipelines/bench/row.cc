@@ -12,12 +12,11 @@
 #include "datasets/types/errors.h"
 #include "eval/metrics/csv.h"
 #include "pipelines/base/version.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 template <typename List, typename Value>
@@ -201,7 +200,7 @@ std::string bench_json(const std::vector<BenchRow>& rows, const std::string& sui
       object[name] = std::isfinite(value) ? Json(value) : Json();
     out["rows"].push_back(object);
   }
-  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(out, 1) + "\n";
 }
 
 std::vector<BenchRow> read_bench_json(const std::string& path) {
@@ -218,7 +217,7 @@ std::vector<BenchRow> read_bench_json(const std::string& path) {
   std::vector<BenchRow> rows;
   for (const Json& row : json["rows"]) {
     if (!row.is_object() || !row.contains("scene") || !row.contains("variant"))
-      throw InputError(path, "rows with scene and variant", row.dump().substr(0, 60));
+      throw InputError(path, "rows with scene and variant", json_text(row).substr(0, 60));
     rows.push_back(row_of(row));
   }
   return rows;

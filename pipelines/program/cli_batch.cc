@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "pipelines/base/print_json.h"
 #include "pipelines/batch/run.h"
 #include "pipelines/command/cli.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -72,12 +72,12 @@ void tell_plan(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, b
   for (const Load& load : plan.loads) largest = std::max(largest, load.memory_mb);
   const double seconds = plan.open.empty() ? 0 : expected_seconds(plan);
   if (json) {
-    nlohmann::ordered_json out = {{"scenes", scenes.size()},
-                                  {"done", scenes.size() - plan.open.size()},
-                                  {"jobs", plan.jobs},
-                                  {"expected_seconds", std::round(seconds)},
-                                  {"largest_mb", std::round(largest)}};
-    out["open"] = nlohmann::ordered_json::array();
+    Json out = {{"scenes", scenes.size()},
+                {"done", scenes.size() - plan.open.size()},
+                {"jobs", plan.jobs},
+                {"expected_seconds", std::round(seconds)},
+                {"largest_mb", std::round(largest)}};
+    out["open"] = Json::array();
     for (const int i : plan.open) out["open"].push_back(scenes[i].scene.folder);
     print_json(out);
     return;

@@ -9,12 +9,11 @@
 #include "pipelines/pages/page.h"
 #include "sketches/curve/curve.h"
 #include "sketches/io/io.h"
+#include "sketches/io/json.h"
 #include "sketches/solve/similarity.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double six_decimals(double x) { return std::round(x * 1e6) / 1e6; }
 
@@ -48,7 +47,7 @@ std::string page_of(const std::string& json, const Inspection& inspection, const
                     const std::vector<ReportImage>& overlays) {
   const Extent extent = sketch_extent(nominal.sketch);
   Json data;
-  data["inspection"] = Json::parse(json);
+  data["inspection"] = parse_json<Json>(json);
   data["tolerance"] = inspection.edges[0].tolerance;
   data["edges"] = data["measured"] = data["overlays"] = Json::array();
   for (size_t i = 0; i < nominal.edges.size(); ++i)
@@ -57,7 +56,7 @@ std::string page_of(const std::string& json, const Inspection& inspection, const
     data["measured"].push_back(measured_curve(inspection.measured, s, extent));
   for (const ReportImage& image : overlays)
     data["overlays"].push_back({{"name", image.name}, {"png", base64(image.png)}});
-  return fill_page(kInspectionPage, data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return fill_page(kInspectionPage, json_text(data));
 }
 
 // The nominal edges, green, red, orange and grey.

@@ -13,12 +13,11 @@
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Kind = ScaleReference::Kind;
 
 constexpr double kTagsDiffer = 5;      // standard deviations, and
@@ -71,9 +70,12 @@ class Errors {
     Sketch s = sketch_;
     const Stroke& at = s.strokes[stroke];
     const int point = coordinate / 3, row = coordinate % 3;
-    if (is_closed(at.kind)) s.handles(row, at.handle + point) += step;
-    else if (point == 1) s.handles(row, at.handle) += step;
-    else s.nodes(row, point == 0 ? at.begin : at.end) += step;
+    if (is_closed(at.kind))
+      s.handles(row, at.handle + point) += step;
+    else if (point == 1)
+      s.handles(row, at.handle) += step;
+    else
+      s.nodes(row, point == 0 ? at.begin : at.end) += step;
     return circle_parameters(s, stroke).radius;
   }
 
@@ -107,8 +109,7 @@ int largest_circle(const Sketch& sketch) {
   int best = -1;
   for (int i = 0; i < sketch.size(); ++i)
     if (sketch.strokes[i].kind == StrokeKind::kCircle &&
-        (best < 0 ||
-         circle_parameters(sketch, i).radius > circle_parameters(sketch, best).radius))
+        (best < 0 || circle_parameters(sketch, i).radius > circle_parameters(sketch, best).radius))
       best = i;
   return best;
 }
@@ -179,8 +180,8 @@ Length length_of(const ScaleReference& r, const Sketch& sketch, double footprint
       return diameter_of(
           sketch, stroke_of(sketch, r.first, StrokeKind::kArc, StrokeKind::kCircle, where), errors);
     case Kind::kLine: {
-      const Stroke& s = sketch.strokes[stroke_of(sketch, r.first, StrokeKind::kLine,
-                                                 StrokeKind::kLine, where)];
+      const Stroke& s =
+          sketch.strokes[stroke_of(sketch, r.first, StrokeKind::kLine, StrokeKind::kLine, where)];
       return node_distance(sketch, s.begin, s.end, errors, where);
     }
     case Kind::kNodes:
@@ -258,7 +259,7 @@ KnownScale stated_scale(const CadOptions& options, const std::string& sketch_jso
   const double scale = has ? s["units_per_world"].get<double>() : 0;
   if (unit == names.end() || !(scale > 0) || !std::isfinite(scale))
     throw InputError(sketch_json, "a unit and units_per_world as \"scale\"",
-                     s.dump().substr(0, 60));
+                     json_text(s).substr(0, 60));
   const LengthUnit stated = LengthUnit(unit - names.begin());
   if (!options.unit_given) out.unit = stated;
   out.units_per_world = scale * millimetres(stated) / millimetres(out.unit);
@@ -279,15 +280,14 @@ std::string scale_json(const KnownScale& scale) {
               {"unit", length_unit_names()[int(scale.unit)]},
               {"units_per_world", scale.units_per_world},
               {"world_per_unit", 1 / scale.units_per_world}};
-  out["sigma_relative"] =
-      std::isnan(scale.sigma_relative) ? Json() : Json(scale.sigma_relative);
+  out["sigma_relative"] = std::isnan(scale.sigma_relative) ? Json() : Json(scale.sigma_relative);
   for (const TagSquare& t : scale.tags)
     out["tags"].push_back({{"id", t.id},
                            {"side", t.side},
                            {"sigma", t.sigma},
                            {"views", t.views},
                            {"rms_px", t.rms_px}});
-  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(out);
 }
 
 }  // namespace sketchsplat

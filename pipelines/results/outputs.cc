@@ -17,12 +17,11 @@
 #include "pipelines/results/snap_output.h"
 #include "pipelines/results/solid_output.h"
 #include "sketches/io/io.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace fs = std::filesystem;
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kObjDeflection = 1e-4;  // of the extent
 
@@ -123,14 +122,14 @@ SolidOutputOptions solid_options(const Reconstruction& reconstruction, const Sce
                                  const KnownScale& scale, const OutputOptions& options) {
   const CadOptions cad = at_scale(options.cad, scale);
   Json extra = {{"program", "sketchsplat"}, {"version", program_version()}};
-  if (!scale.source.empty()) extra["scale"] = Json::parse(scale_json(scale));
+  if (!scale.source.empty()) extra["scale"] = parse_json<Json>(scale_json(scale));
   SolidOutputOptions out;
   out.step = {product_name(scene, "solid"), cad.scale, cad.unit};
   out.scale = scale;
   out.sigma.footprint = footprint_of(reconstruction);
   out.sigma.bias_px = typical_bias_px(reconstruction.sketch);
   out.shell = options.shell;
-  out.extra = extra.dump();
+  out.extra = json_text(extra);
   return out;
 }
 
@@ -139,20 +138,20 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
                   const OutputOptions& options) {
   const Sketch& sketch = reconstruction.sketch;
   Json extra = {{"program", "sketchsplat"}, {"version", program_version()}};
-  extra["options"] = Json::parse(options_json);
+  extra["options"] = parse_json<Json>(options_json);
   extra["regularities"] = json_of(reconstruction.report.regularities);
   extra["views"] = reconstruction.views;
-  if (!scale.source.empty()) extra["scale"] = Json::parse(scale_json(scale));
+  if (!scale.source.empty()) extra["scale"] = parse_json<Json>(scale_json(scale));
   if (footprint_of(reconstruction) > 0) extra["footprint"] = footprint_of(reconstruction);
   if (count_of(reconstruction, "pose_scale_sigma") > 0)
     extra["pose_scale_sigma"] = count_of(reconstruction, "pose_scale_sigma");
   if (reconstruction.proposed.size() > 0) {
     std::ostringstream proposed;
     write_sketch_json(proposed, reconstruction.proposed);
-    extra["proposed"] = Json::parse(proposed.str());
+    extra["proposed"] = parse_json<Json>(proposed.str());
   }
   // Names of files may hold bytes that are no UTF-8.
-  const std::string members = extra.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string members = json_text(extra);
   write_atomically(folder + "/sketch.json",
                    [&](std::ostream& out) { write_sketch_json(out, sketch, members); });
   write_atomically(folder + "/parametric_edges.json",

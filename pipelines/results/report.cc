@@ -15,18 +15,14 @@
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/graph/inferred.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
 constexpr int kBlendPoints = 32;  // along a blend, of the points that are listed
 
-using Json = nlohmann::ordered_json;
-
 // Names from files may hold bytes that are no UTF-8: shown as U+FFFD rather than refused.
-std::string dump(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
 
 Json number(double value) {
   if (std::nearbyint(value) == value && std::abs(value) < 1e15) return int64_t(value);
@@ -155,7 +151,7 @@ Json faces_json(const SolidOutcome* solid, const Extent& extent) {
   const Solid& shown = solid->written ? *solid->search.solid : *solid->search.shell;
   for (size_t f = 0; f < solid->mesh.size(); ++f)
     faces.push_back(face_json(solid->mesh[f], shown.surfaces[shown.faces[f].surface].kind, extent));
-  return faces.dump().size() > kMostBytes ? Json::array() : faces;
+  return json_text(faces).size() > kMostBytes ? Json::array() : faces;
 }
 
 Json blends_json(const Blends& blends) {
@@ -209,10 +205,10 @@ std::string report_json(const ReportInput& input) {
   }
   json["counts"] = counts_json(input);
   if (input.scale && !input.scale->source.empty())
-    json["scale"] = Json::parse(scale_json(*input.scale));
+    json["scale"] = parse_json<Json>(scale_json(*input.scale));
   if (input.reconstruction->snap.asked)
-    json["snap"] = Json::parse(snap_json(input.reconstruction->snap));
-  if (input.solid) json["solid"] = Json::parse(solid_json(*input.solid));
+    json["snap"] = parse_json<Json>(snap_json(input.reconstruction->snap));
+  if (input.solid) json["solid"] = parse_json<Json>(solid_json(*input.solid));
   json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;
   json["strokes"] = Json::array();
@@ -221,13 +217,13 @@ std::string report_json(const ReportInput& input) {
     json["blends"] = blends_json(input.reconstruction->blends);
   json["warnings"] = run.warnings;
   json["options"] = Json::parse(input.options_json);
-  return dump(json, 2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 std::string report_html(const std::string& report, const ReportPage& page) {
   const Extent extent = sketch_extent(*page.sketch);
   Json data;
-  data["report"] = Json::parse(report);
+  data["report"] = parse_json<Json>(report);
   data["kinds"] = Json::array();
   for (const StrokeKind kind :
        {StrokeKind::kLine, StrokeKind::kArc, StrokeKind::kCircle, StrokeKind::kEllipse,
@@ -241,7 +237,7 @@ std::string report_html(const std::string& report, const ReportPage& page) {
   data["photos"] = Json::array();
   for (const PagePhoto& photo : page.photos) data["photos"].push_back(photo_json(photo));
 
-  return fill_page(kReportPage, dump(data, -1));
+  return fill_page(kReportPage, json_text(data));
 }
 
 }  // namespace sketchsplat

@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "pipelines/base/atomic_file.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Columns of the table and members of the objects.
 Json row_of(const Snap& s, const std::string& unit) {
@@ -37,7 +36,7 @@ std::string cell(const Json& value) {
     return text;
   }
   std::string all;
-  for (const Json& one : value) all += (all.empty() ? "" : " ") + one.dump();
+  for (const Json& one : value) all += (all.empty() ? "" : " ") + json_text(one);
   return all;
 }
 
@@ -69,7 +68,7 @@ std::string snap_json(const SnapOutcome& outcome) {
                {"hypotheses", outcome.hypotheses}};
   json["snaps"] = Json::array();
   for (const Snap& s : outcome.snaps) json["snaps"].push_back(row_of(s, outcome.unit));
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace sketchsplat

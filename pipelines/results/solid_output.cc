@@ -11,6 +11,7 @@
 #include "pipelines/base/atomic_file.h"
 #include "pipelines/results/brep_plugin.h"
 #include "sketches/io/io_solid.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 
@@ -95,8 +96,8 @@ std::map<std::string, int> faces_by_kind(const Solid& solid) {
   return faces;
 }
 
-nlohmann::ordered_json shell_json(const SolidOutcome& outcome) {
-  nlohmann::ordered_json json = {{"written", outcome.shell_written}};
+Json shell_json(const SolidOutcome& outcome) {
+  Json json = {{"written", outcome.shell_written}};
   if (!outcome.shell_written) json["why"] = outcome.why_no_shell;
   if (!outcome.search.shell) return json;
   json["faces"] = faces_by_kind(*outcome.search.shell);
@@ -112,7 +113,6 @@ nlohmann::ordered_json shell_json(const SolidOutcome& outcome) {
 }  // namespace
 
 std::string solid_json(const SolidOutcome& outcome) {
-  using Json = nlohmann::ordered_json;
   Json json = {{"written", outcome.written}};
   if (!outcome.written) json["why"] = outcome.why;
   const SolidSearch& search = outcome.search;
@@ -135,11 +135,11 @@ std::string solid_json(const SolidOutcome& outcome) {
   }
   if (outcome.tables) {
     json["unit"] = outcome.tables->unit;
-    json["surfaces"] = Json::parse(surfaces_json(*outcome.tables));
-    json["dimensions"] = Json::parse(dimensions_json(*outcome.tables));
+    json["surfaces"] = parse_json<Json>(surfaces_json(*outcome.tables));
+    json["dimensions"] = parse_json<Json>(dimensions_json(*outcome.tables));
   }
   if (outcome.shell_asked) json["shell"] = shell_json(outcome);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace sketchsplat

@@ -16,10 +16,10 @@
 #include "eval/metrics/edge_maps.h"
 #include "eval/metrics/map_errors.h"
 #include "pipelines/base/atomic_file.h"
-#include "pipelines/base/print_json.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/detectors/detectors.h"
 #include "pipelines/results/geometry_files.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -129,13 +129,12 @@ void tell_scores(const EdgeMapScore& mean, int maps, const std::vector<ViewScore
   std::cout << line;
 }
 
-nlohmann::ordered_json json_of_scores(const EdgeMapScore& mean,
-                                      const std::vector<ViewScore>& scores) {
-  nlohmann::ordered_json json = {{"tolerance_px", kTolerance},
-                                 {"precision", 100 * mean.precision},
-                                 {"recall", 100 * mean.recall},
-                                 {"f", 100 * mean.f},
-                                 {"rms_px", mean.rms_px}};
+Json json_of_scores(const EdgeMapScore& mean, const std::vector<ViewScore>& scores) {
+  Json json = {{"tolerance_px", kTolerance},
+               {"precision", 100 * mean.precision},
+               {"recall", 100 * mean.recall},
+               {"f", 100 * mean.f},
+               {"rms_px", mean.rms_px}};
   int views = 0;
   const MapErrors errors = mean_map_errors(scores, &views);
   if (views > 0)
@@ -160,7 +159,7 @@ void tell(const std::vector<Detection>& found, const std::vector<ViewScore>& sco
   const double n = std::max(1, maps);
   mean.precision /= n, mean.recall /= n, mean.f /= n, mean.rms_px /= n;
   if (json) {
-    nlohmann::ordered_json out = {{"folder", map_folder(arguments)}, {"maps", maps}};
+    Json out = {{"folder", map_folder(arguments)}, {"maps", maps}};
     if (arguments.score) out["score"] = json_of_scores(mean, scores);
     print_json(out);
     return;

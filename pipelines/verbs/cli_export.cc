@@ -11,7 +11,6 @@
 
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
-#include "pipelines/base/print_json.h"
 #include "pipelines/base/sketch_input.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/pages/overlay.h"
@@ -22,7 +21,7 @@
 #include "pipelines/survey/confidence.h"
 #include "sketches/io/io.h"
 #include "sketches/io/io_glb.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -56,20 +55,20 @@ std::string format_of(const std::string& path) {
 // What sketch.json holds beside the sketch: the options, the names of the views.
 std::string other_members(const std::string& path, bool without_proposed, const KnownScale& scale) {
   std::ifstream in(path);
-  nlohmann::ordered_json j = parse_json<nlohmann::ordered_json>(in, path);
+  Json j = parse_json<Json>(in, path);
   for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
   if (without_proposed) j.erase("proposed");
-  if (!scale.source.empty()) j["scale"] = nlohmann::ordered_json::parse(scale_json(scale));
-  return j.dump();
+  if (!scale.source.empty()) j["scale"] = parse_json<Json>(scale_json(scale));
+  return json_text(j);
 }
 
 // The edges that nobody saw join the nodes of the others.
 Sketch with_proposed(Sketch sketch, const std::string& given) {
   const std::string path = sketch_file(given);
   std::ifstream in(path);
-  const auto j = parse_json<nlohmann::ordered_json>(in, path);
+  const auto j = parse_json<Json>(in, path);
   if (!j.contains("proposed")) return sketch;
-  std::istringstream text(j["proposed"].dump());
+  std::istringstream text(json_text(j["proposed"]));
   const Sketch proposed = read_sketch_json(text, path + ": proposed");
   std::vector<int> node;
   for (int n = 0; n < proposed.nodes.cols(); ++n) {

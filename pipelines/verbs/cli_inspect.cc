@@ -10,7 +10,6 @@
 #include <set>
 #include <sstream>
 
-#include "datasets/io/json_file.h"
 #include "datasets/readers/scene.h"
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
@@ -22,6 +21,7 @@
 #include "pipelines/results/inspection_outputs.h"
 #include "pipelines/verbs/synthesis_plugin.h"
 #include "sketches/curve/curve.h"
+#include "sketches/io/json.h"
 #include "sketches/io/length_unit.h"
 
 namespace sketchsplat {
@@ -266,8 +266,7 @@ void inspect_lot(const std::vector<std::string>& results, const NominalFile& fil
 
 // Numbers by the names that inspection.json gives them.
 void read_calibration(const std::string& path, SigmaOptions* options) {
-  const nlohmann::json json = load_json(path);
-  const JsonValue file{&json, path, ""};
+  const JsonValue file = load_json(path);
   for (const auto& [name, value] : named_numbers(options)) {
     *value = file[name].number();
     if (!(*value >= 0)) file[name].complain("a number that is not negative");

@@ -14,7 +14,6 @@
 #include "datasets/types/errors.h"
 #include "edges/views/lift.h"
 #include "pipelines/base/atomic_file.h"
-#include "pipelines/base/print_json.h"
 #include "pipelines/cameras/find_cameras.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/method/estimate.h"
@@ -23,6 +22,7 @@
 #include "pipelines/pages/page_photos.h"
 #include "pipelines/results/known_scale.h"
 #include "pipelines/results/outputs.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -89,9 +89,7 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
   if (arguments.method.tags && !photographs)
     scale = known_scale(arguments.output.cad, {}, 0, measure_tags(scene, nullptr, progress));
   if (json) {
-    const nlohmann::ordered_json size =
-        scale.source.empty() ? nlohmann::ordered_json()
-                             : nlohmann::ordered_json::parse(scale_json(scale));
+    const Json size = scale.source.empty() ? Json() : parse_json<Json>(scale_json(scale));
     print_json({{"scale", size},
                 {"scene", scene.folder},
                 {"format", scene.format},
@@ -128,8 +126,8 @@ void tell_result(const Sketch& sketch, const SnapOutcome& snap, const KnownScale
                  const ReconstructArguments& arguments, bool json) {
   if (json) {
     std::ifstream in(arguments.out + "/report.json");
-    nlohmann::ordered_json result = {{"out", arguments.out}};
-    result.update(nlohmann::ordered_json::parse(in));
+    Json result = {{"out", arguments.out}};
+    result.update(parse_json<Json>(in));
     print_json(result);
     return;
   }
@@ -213,8 +211,7 @@ Verb reconstruct_verb() {
   f.add("allow-outside", &arguments->open.allow_outside,
         "Read images that the scene file places outside of its folder, too")
       .expert = true;
-  f.add("dry-run", &arguments->dry_run,
-        "Say what would be read, and what it takes");
+  f.add("dry-run", &arguments->dry_run, "Say what would be read, and what it takes");
   f.add("like-folder", &arguments->method.like_folder, "DIR",
         "Relative paths of --like begin in this folder, which results do not tell")
       .expert = true;

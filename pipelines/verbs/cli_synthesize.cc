@@ -8,10 +8,10 @@
 #include "datasets/synthetic/catalogue/part_table.h"
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
-#include "pipelines/base/print_json.h"
 #include "pipelines/base/run_report.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/verbs/synthesis_plugin.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -46,10 +46,10 @@ PartValues part_values(const std::string& part, const std::string& lines) {
   return values;
 }
 
-nlohmann::ordered_json json_of_parts() {
-  nlohmann::ordered_json parts = nlohmann::ordered_json::object();
+Json json_of_parts() {
+  Json parts = Json::object();
   for (const PartSpec& spec : part_specs()) {
-    parts[spec.name] = nlohmann::ordered_json::object();
+    parts[spec.name] = Json::object();
     for (const PartParameter& p : spec.parameters)
       parts[spec.name][p.name] = {
           {"unit", p.unit}, {"drawn", {p.low, p.high}}, {"allowed", {p.least, p.most}}};

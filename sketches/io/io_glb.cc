@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "sketches/curve/curve.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr StrokeKind kKinds[] = {StrokeKind::kLine,        StrokeKind::kArc,
                                  StrokeKind::kCircle,      StrokeKind::kEllipse,
@@ -107,7 +106,7 @@ void write_glb(std::ostream& out, const Sketch& sketch, const GlbOptions& option
     gltf["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
     gltf["buffers"] = Json::array({{{"byteLength", bytes.size()}}});
   }
-  std::string text = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = json_text(gltf);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   std::string head = "glTF";
   append(std::uint32_t(2), &head);

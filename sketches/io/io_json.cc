@@ -9,14 +9,12 @@
 #include "sketches/curve/curve_chain.h"
 #include "sketches/graph/inferred.h"
 #include "sketches/io/io.h"
+#include "sketches/io/json.h"
 #include "sketches/io/json_reader.h"
-#include "sketches/io/json_text.h"
 #include "sketches/io/sketch_json.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kFormatVersion = 1;
 
@@ -138,6 +136,15 @@ void read_stroke(const JsonReader& reader, const Json& j, const std::string& whe
 
 }  // namespace
 
+Json json_of_point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+void write_json_array(std::ostream& out, const char* name, const std::vector<Json>& items) {
+  out << "  \"" << name << "\": [";
+  for (size_t i = 0; i < items.size(); ++i)
+    out << (i ? ",\n    " : "\n    ") << json_text(items[i]);
+  out << (items.empty() ? "]" : "\n  ]");
+}
+
 void write_sketch_members(std::ostream& out, const Sketch& sketch,
                           const std::vector<CurveChain>& chains) {
   const std::vector<bool> inner = inner_joints(sketch, chains);
@@ -157,17 +164,21 @@ void write_sketch_members(std::ostream& out, const Sketch& sketch,
 void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::string& extra) {
   out << "{\n  \"format_version\": " << kFormatVersion << ",\n";
   if (!extra.empty()) {
-    const Json members = Json::parse(extra, nullptr, false);
+    Json members;
+    try {
+      members = parse_json<Json>(extra);
+    } catch (const Json::parse_error&) {
+    }
     if (!members.is_object()) throw InputError("extra members of a sketch", "a JSON object", extra);
     for (const auto& [key, value] : members.items())
       if (key != "format_version" && key != "nodes" && key != "strokes")
-        out << "  " << Json(key).dump() << ": " << value.dump() << ",\n";
+        out << "  " << json_text(Json(key)) << ": " << json_text(value) << ",\n";
   }
   write_sketch_members(out, sketch, curve_chains(sketch));
   out << "\n}\n";
 }
 
-Sketch sketch_of_members(const nlohmann::ordered_json& j, const JsonReader& reader) {
+Sketch sketch_of_members(const Json& j, const JsonReader& reader) {
   Sketch sketch;
   const Json& nodes = reader.array(j, "nodes", "the file", kMostParts);
   sketch.nodes.resize(3, nodes.size());

@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "sketches/curve/curve_chain.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/json.h"
 #include "sketches/io/sketch_json.h"
 
 namespace sketchsplat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kFormatVersion = 1;
 
@@ -116,13 +114,13 @@ SolidFace read_face(const JsonReader& reader, const Json& j, const Solid& solid,
 
 void write_solid_json(std::ostream& out, const Solid& solid, const std::string& extra) {
   out << "{\n  \"format_version\": " << kFormatVersion << ",\n";
-  const Json members = extra.empty() ? Json::object() : Json::parse(extra);
+  const Json members = extra.empty() ? Json::object() : parse_json<Json>(extra);
   for (const auto& [key, value] : members.items())
-    out << "  " << Json(key).dump() << ": " << value.dump() << ",\n";
+    out << "  " << json_text(Json(key)) << ": " << json_text(value) << ",\n";
   Json inferred = Json::array();
   for (size_t i = 0; i < solid.inferred.size(); ++i)
     if (solid.inferred[i]) inferred.push_back(i);
-  out << "  \"gap\": " << Json(solid.gap).dump() << ",\n  \"inferred\": " << inferred.dump()
+  out << "  \"gap\": " << json_text(Json(solid.gap)) << ",\n  \"inferred\": " << json_text(inferred)
       << ",\n";
   std::vector<Json> surfaces, faces;
   for (const Surface& s : solid.surfaces) surfaces.push_back(json_of_surface(s));

@@ -2,69 +2,26 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "datasets/types/errors.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 
 /// Reads values and says where in the file the unusable one is: InputError.
 class JsonReader {
  public:
-  using Json = nlohmann::ordered_json;
-
   explicit JsonReader(const std::string& path) : path_(path) {}
 
-  [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
-    throw InputError(path_, expected, found);
-  }
-  const Json& member(const Json& object, const char* key, const std::string& where) const {
-    if (!object.is_object()) fail("an object as " + where, object.type_name());
-    const auto it = object.find(key);
-    if (it == object.end()) fail("\"" + std::string(key) + "\" in " + where, "no such key");
-    return *it;
-  }
-  const Json& array(const Json& object, const char* key, const std::string& where) const {
-    const Json& a = member(object, key, where);
-    if (!a.is_array()) fail("an array as \"" + std::string(key) + "\" in " + where, a.type_name());
-    return a;
-  }
+  [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
+  const Json& member(const Json& object, const char* key, const std::string& where) const;
   /// Of at most so many.
   const Json& array(const Json& object, const char* key, const std::string& where,
-                    size_t most) const {
-    const Json& a = array(object, key, where);
-    if (a.size() > most)
-      fail("at most " + std::to_string(most) + " " + key + " in " + where,
-           std::to_string(a.size()));
-    return a;
-  }
-  Eigen::Vector3d point(const Json& j, const std::string& where) const {
-    if (!j.is_array() || j.size() != 3) fail("three numbers as " + where, summary(j));
-    for (const Json& x : j)
-      if (!x.is_number()) fail("three numbers as " + where, summary(j));
-    const Eigen::Vector3d p(j[0].get<double>(), j[1].get<double>(), j[2].get<double>());
-    constexpr double kLargest = 1e100;  // squares and cubes of it overflow
-    if (!(p.cwiseAbs().maxCoeff() < kLargest)) fail("numbers below 1e100 as " + where, summary(j));
-    return p;
-  }
-  double number(const Json& object, const char* key, double absent,
-                const std::string& where) const {
-    const auto it = object.find(key);
-    if (it == object.end()) return absent;
-    if (!it->is_number())
-      fail("a number as \"" + std::string(key) + "\" in " + where, summary(*it));
-    return it->get<double>();
-  }
-  int integer(const Json& j, const std::string& what) const {
-    if (!j.is_number_integer() || j.get<double>() < 0 || j.get<double>() > 2e9)
-      fail(what, summary(j));
-    return j.get<int>();
-  }
-  static std::string summary(const Json& j) {
-    const std::string text = j.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return text.size() <= 60 ? text : text.substr(0, 57) + "...";
-  }
+                    size_t most = size_t(-1)) const;
+  Eigen::Vector3d point(const Json& j, const std::string& where) const;
+  double number(const Json& object, const char* key, double absent, const std::string& where) const;
+  int integer(const Json& j, const std::string& what) const;
+  static std::string summary(const Json& j);
 
  private:
   std::string path_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <vector>
 
@@ -16,23 +15,16 @@ namespace sketchsplat {
 /// Nodes, strokes, handles of one: adding them copies the others.
 constexpr size_t kMostParts = 50000;
 
-inline nlohmann::ordered_json json_of_point(const Eigen::Vector3d& p) {
-  return {p.x(), p.y(), p.z()};
-}
+Json json_of_point(const Eigen::Vector3d& p);
 
 /// One item a line: readable, and a change of one stroke is a change of one line.
-inline void write_json_array(std::ostream& out, const char* name,
-                             const std::vector<nlohmann::ordered_json>& items) {
-  out << "  \"" << name << "\": [";
-  for (size_t i = 0; i < items.size(); ++i) out << (i ? ",\n    " : "\n    ") << items[i].dump();
-  out << (items.empty() ? "]" : "\n  ]");
-}
+void write_json_array(std::ostream& out, const char* name, const std::vector<Json>& items);
 
 /// "nodes" and "strokes", with a comma between and none behind; chains become strokes.
 void write_sketch_members(std::ostream& out, const Sketch& sketch,
                           const std::vector<CurveChain>& chains);
 
 /// The sketch that these members are. Throws InputError.
-Sketch sketch_of_members(const nlohmann::ordered_json& object, const JsonReader& reader);
+Sketch sketch_of_members(const Json& object, const JsonReader& reader);
 
 }  // namespace sketchsplat

@@ -13,6 +13,7 @@
 #include "datasets/synthetic/cad/curve_kind.h"
 #include "sketches/curve/closest.h"
 #include "sketches/curve/conic.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -284,7 +285,7 @@ std::vector<std::pair<std::string, std::string>> abc_files(const SyntheticScene&
   const Writer writer(scene);
   return {{"feat/model_features_000.yml", writer.features()},
           {"obj/model_trimesh_000.obj", writer.obj()},
-          {"chunk_0000_stats.json", nlohmann::json{{"model", writer.stats(scene)}}.dump(1)}};
+          {"chunk_0000_stats.json", json_text(nlohmann::json{{"model", writer.stats(scene)}}, 1)}};
 }
 
 }  // namespace sketchsplat

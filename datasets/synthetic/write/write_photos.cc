@@ -107,7 +107,7 @@ void write_photos(const SyntheticScene& scene, const std::string& folder) {
   const bool err = error > 0 || !o.photo.state_lens;
   write_model(stated, err ? triangulated(points, stated) : points, folder + "/sparse/0");
   if (err) write_model(scene.views, points, folder + "/true");
-  write_text(folder + "/scene.json", facts(scene, error).dump(1));
+  write_text(folder + "/scene.json", json_text(facts(scene, error), 1));
 }
 
 }  // namespace sketchsplat

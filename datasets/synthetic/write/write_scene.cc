@@ -13,6 +13,7 @@
 #include "datasets/synthetic/write/write_truth.h"
 #include "datasets/types/errors.h"
 #include "datasets/types/parallel.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -97,7 +98,7 @@ void write_scene(const SyntheticScene& scene, const std::string& folder) {
     write_outputs(scene, k, view, folder, outputs);
   });
   write_truth(scene, folder);
-  write_text(folder + "/meta_data.json", meta_data(scene).dump(1));
+  write_text(folder + "/meta_data.json", json_text(meta_data(scene), 1));
 }
 
 }  // namespace sketchsplat

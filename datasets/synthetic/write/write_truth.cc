@@ -9,6 +9,7 @@
 #include "datasets/synthetic/write/write_part.h"
 #include "datasets/types/errors.h"
 #include "sketches/io/io.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
@@ -71,7 +72,7 @@ void write_image(const std::string& path, Fate fate,
 void write_truth(const SyntheticScene& scene, const std::string& folder) {
   make_folder(folder + "/groundtruth/abc/feat");
   make_folder(folder + "/groundtruth/abc/obj");
-  write_text(folder + "/groundtruth/gt.json", ground_truth(scene.truth).dump());
+  write_text(folder + "/groundtruth/gt.json", json_text(ground_truth(scene.truth)));
   std::ostringstream sketch;
   write_sketch_json(sketch, scene.truth.sketch);
   write_text(folder + "/groundtruth/sketch.json", sketch.str());

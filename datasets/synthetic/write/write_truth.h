@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "datasets/synthetic/render/degrade.h"

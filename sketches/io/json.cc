@@ -1,18 +1,69 @@
 // SPDX-License-Identifier: MIT
-#include "datasets/io/json_file.h"
+#include "sketches/io/json.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <limits>
-#include <vector>
+#include <nlohmann/json.hpp>
 
 #include "datasets/types/errors.h"
-#include "sketches/io/json_text.h"
+#include "sketches/io/whole_file.h"
 
 namespace sketchsplat {
-namespace {
 
 using nlohmann::json;
+
+int json_nesting(const std::string& text) {
+  int depth = 0, deepest = 0;
+  bool quoted = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      quoted = c != '"';
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == ']' || c == '}') {
+      --depth;
+    } else {
+      quoted = c == '"';
+    }
+  }
+  return deepest;
+}
+
+template <typename J>
+J parse_json(const std::string& text, const std::string& path) {
+  const int nesting = json_nesting(text);
+  if (nesting > kMostJsonNesting)
+    throw InputError(path,
+                     "JSON with at most " + std::to_string(kMostJsonNesting) +
+                         " arrays and objects in one another",
+                     std::to_string(nesting));
+  return J::parse(text);
+}
+template json parse_json(const std::string&, const std::string&);
+template Json parse_json(const std::string&, const std::string&);
+
+template <typename J>
+J parse_json(std::istream& in, const std::string& path) {
+  return parse_json<J>(read_whole(&in, path, kMostJsonBytes), path);
+}
+template json parse_json(std::istream&, const std::string&);
+template Json parse_json(std::istream&, const std::string&);
+
+template <typename J>
+std::string json_text(const J& json, int indent) {
+  return json.dump(indent, ' ', false, J::error_handler_t::replace);
+}
+template std::string json_text(const json&, int);
+template std::string json_text(const Json&, int);
+
+void print_json(const Json& json) { std::cout << json_text(json, 1) << "\n"; }
+
+namespace {
 
 /// Replaces the number-like words of Python's json module, outside of strings, by null.
 std::string without_nan(const std::string& text) {
@@ -32,7 +83,7 @@ std::string without_nan(const std::string& text) {
 }
 
 std::string describe(const json& value) {
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string text = json_text(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
 }
@@ -50,14 +101,16 @@ JsonValue JsonValue::operator[](const std::string& key) const {
     throw InputError(path, "the key \"" + key + "\"" + (where.empty() ? "" : " in " + where),
                      "none");
   }
-  return {&*found, path, where.empty() ? key : where + "." + key};
+  return {{json, &*found}, path, where.empty() ? key : where + "." + key};
 }
+
+size_t JsonValue::size() const { return json->size(); }
 
 std::vector<JsonValue> JsonValue::elements() const {
   if (!json->is_array()) complain("an array");
   std::vector<JsonValue> all;
   for (size_t i = 0; i < json->size(); ++i) {
-    all.push_back({&(*json)[i], path, where + "[" + std::to_string(i) + "]"});
+    all.push_back({{json, &(*json)[i]}, path, where + "[" + std::to_string(i) + "]"});
   }
   return all;
 }
@@ -87,9 +140,10 @@ Eigen::MatrixXd JsonValue::matrix(int rows, int cols) const {
   if (!json->is_array() || int(json->size()) < rows) complain(expected);
   Eigen::MatrixXd m(rows, cols);
   for (int r = 0; r < rows; ++r) {
-    const JsonValue row{&(*json)[r], path, where + "[" + std::to_string(r) + "]"};
+    const JsonValue row{{json, &(*json)[r]}, path, where + "[" + std::to_string(r) + "]"};
     if (!row.json->is_array() || int(row.json->size()) < cols) complain(expected);
-    for (int c = 0; c < cols; ++c) m(r, c) = JsonValue{&(*row.json)[c], path, row.where}.number();
+    for (int c = 0; c < cols; ++c)
+      m(r, c) = JsonValue{{json, &(*row.json)[c]}, path, row.where}.number();
   }
   return m;
 }
@@ -98,17 +152,19 @@ void JsonValue::complain(const std::string& expected) const {
   throw InputError(path, expected + (where.empty() ? "" : " in " + where), describe(*json));
 }
 
-json load_json(const std::string& path) {
+JsonValue load_json(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || file.peek() == std::ifstream::traits_type::eof())
     throw InputError(path, "a JSON file", "nothing to read");
   const std::string text = read_whole(&file, path, kMostJsonBytes);
   try {
+    const auto value = std::make_shared<json>();
     try {
-      return parse_json_text<json>(text, path);
+      *value = parse_json<json>(text, path);
     } catch (const json::parse_error&) {
-      return json::parse(without_nan(text));  // perhaps because of a NaN
+      *value = json::parse(without_nan(text));  // perhaps because of a NaN
     }
+    return {value, path, ""};
   } catch (const json::out_of_range&) {
     throw InputError(path, "numbers below 1.8e308", "a larger one");
   } catch (const json::parse_error& e) {
