@@ -12,18 +12,6 @@
 
 namespace sketchsplat {
 namespace fs = std::filesystem;
-namespace {
-
-nlohmann::json parsed(const fs::path& path) {
-  std::ifstream in(path);
-  try {
-    return parse_json<nlohmann::json>(in, path.string());
-  } catch (const std::exception&) {
-    return {};
-  }
-}
-
-}  // namespace
 
 std::string sketch_file(const std::string& given) {
   std::error_code none;
@@ -50,14 +38,15 @@ Solid read_solid(const std::string& given) {
 
 SketchOrigin sketch_origin(const std::string& given) {
   SketchOrigin out;
-  const nlohmann::json sketch = parsed(sketch_file(given));
+  const Json sketch = json_of_file(sketch_file(given));
   if (sketch.is_object() && sketch.contains("footprint") && sketch["footprint"].is_number())
     out.footprint = sketch["footprint"].get<double>();
   if (sketch.is_object() && sketch.contains("pose_scale_sigma") &&
       sketch["pose_scale_sigma"].is_number())
     out.pose_scale_sigma = sketch["pose_scale_sigma"].get<double>();
-  const nlohmann::json report = parsed(fs::path(sketch_file(given)).parent_path() / "report.json");
-  const auto folder = nlohmann::json::json_pointer("/scene/folder");
+  const Json report =
+      json_of_file((fs::path(sketch_file(given)).parent_path() / "report.json").string());
+  const auto folder = Json::json_pointer("/scene/folder");
   if (report.is_object() && report.contains(folder) && report[folder].is_string())
     out.scene = report[folder].get<std::string>();
   std::error_code none;

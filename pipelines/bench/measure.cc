@@ -44,15 +44,6 @@ std::string identity_of_folder(const std::string& folder) {
   return identity;
 }
 
-Json read_json(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  try {
-    return parse_json<Json>(in, path);
-  } catch (const std::exception&) {
-    return {};
-  }
-}
-
 // All numbers of an object; those of objects in it are called OUTER_INNER.
 void add_numbers(const Json& object, const std::string& prefix, BenchRow* row) {
   for (const auto& [name, value] : object.items()) {
@@ -167,7 +158,7 @@ bool Measurer::reconstruct(const BenchJob& job, const std::string& result, Bench
     if (k > 0 && child.status == 0 && child.seconds >= best.seconds) continue;
     best = child;
     if (child.status != 0) break;
-    report = read_json(result + "/report.json");
+    report = json_of_file(result + "/report.json");
   }
   row->set("status", std::to_string(best.status));
   if (best.status != 0) row->set("reason", reason_of(best, settings_.timeout_seconds));
@@ -193,7 +184,7 @@ void Measurer::add_accuracy(const std::string& prediction, const std::string& tr
     row->set("reason", "evaluate: " + reason_of(child, settings_.timeout_seconds));
     return;
   }
-  Json numbers = read_json(file);
+  Json numbers = json_of_file(file);
   fs::remove(file);
   for (const char* no_number : {"protocol", "prediction", "ground_truth"}) numbers.erase(no_number);
   add_numbers(numbers, "", row);

@@ -54,6 +54,15 @@ J parse_json(std::istream& in, const std::string& path) {
 template json parse_json(std::istream&, const std::string&);
 template Json parse_json(std::istream&, const std::string&);
 
+Json json_of_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  try {
+    return parse_json<Json>(in, path);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
 template <typename J>
 std::string json_text(const J& json, int indent) {
   return json.dump(indent, ' ', false, J::error_handler_t::replace);

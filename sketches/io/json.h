@@ -32,6 +32,9 @@ J parse_json(const std::string& text, const std::string& path = "JSON of our own
 template <typename J>
 J parse_json(std::istream& in, const std::string& path);
 
+/// Null if there is no such file, or no JSON in it.
+Json json_of_file(const std::string& path);
+
 /// On one line, or by lines that are indented by so many blanks a level. What is no UTF-8 (names of
 /// files may hold it) is replaced.
 template <typename J>
