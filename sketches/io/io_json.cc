@@ -10,13 +10,13 @@
 #include "sketches/graph/inferred.h"
 #include "sketches/io/io.h"
 #include "sketches/io/json.h"
-#include "sketches/io/json_reader.h"
 #include "sketches/io/sketch_json.h"
 
 namespace sketchsplat {
 namespace {
 
 constexpr int kFormatVersion = 1;
+constexpr size_t kMostCount = 2000000000;  // of views
 
 // What a reader who does not know our control points wants to know; we do not read it back.
 void add_derived(const Sketch& sketch, int i, Json* stroke) {
@@ -80,50 +80,32 @@ Json json_of(const Sketch& sketch, const CurveChain& chain, const std::vector<in
   return out;
 }
 
-void read_stroke(const JsonReader& reader, const Json& j, const std::string& where, int num_nodes,
-                 Sketch* sketch) {
-  const Json& name = reader.member(j, "kind", where);
+void read_stroke(const JsonValue& j, size_t num_nodes, Sketch* sketch) {
   StrokeKind kind;
-  if (!name.is_string() || !parse_kind(name.get<std::string>(), &kind))
-    reader.fail("line, arc, circle, ellipse, bezier or elliptic_arc as \"kind\" of " + where,
-                JsonReader::summary(name));
-  const Json& nodes = reader.array(j, "nodes", where);
+  if (!parse_kind(j["kind"].text(), &kind))
+    j["kind"].complain("line, arc, circle, ellipse, bezier or elliptic_arc");
+  const std::vector<JsonValue> nodes = j["nodes"].elements();
   if (nodes.size() != (is_closed(kind) ? 0u : 2u))
-    reader.fail(std::string(is_closed(kind) ? "no" : "two") + " nodes in " + where,
-                std::to_string(nodes.size()));
+    j["nodes"].complain(is_closed(kind) ? "no nodes" : "two nodes");
   int ends[2] = {-1, -1};
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    ends[k] = reader.integer(nodes[k], "an index of a node in " + where);
-    if (ends[k] >= num_nodes)
-      reader.fail("an index of a node in " + where + " below " + std::to_string(num_nodes),
-                  std::to_string(ends[k]));
-  }
-  const Json& handles = reader.array(j, "handles", where, kMostParts);
-  const bool spans = kind == StrokeKind::kBezier && handles.size() % 3 == 2;
-  if (!spans && int(handles.size()) != num_handles(kind))
-    reader.fail(std::to_string(num_handles(kind)) + " handles in " + where +
-                    (kind == StrokeKind::kBezier ? ", or 3 n - 1 for n cubics" : ""),
-                std::to_string(handles.size()));
+  for (size_t k = 0; k < nodes.size(); ++k) ends[k] = nodes[k].index(num_nodes);
   std::vector<Eigen::Vector3d> points;
-  for (const Json& h : handles) points.push_back(reader.point(h, "a handle in " + where));
+  for (const JsonValue& h : j["handles"].elements(kMostParts)) points.push_back(h.point());
+  const bool spans = kind == StrokeKind::kBezier && points.size() % 3 == 2;
+  if (!spans && int(points.size()) != num_handles(kind))
+    j["handles"].complain(std::to_string(num_handles(kind)) + " handles" +
+                          (kind == StrokeKind::kBezier ? ", or 3 n - 1 for n cubics" : ""));
   Evidence e;
-  e.opacity = reader.number(j, "opacity", e.opacity, where);
-  if (j.contains("support_views"))
-    e.support_views = reader.integer(j["support_views"], "a count as support_views in " + where);
-  e.rms_px = reader.number(j, "rms_px", e.rms_px, where);
-  e.bias_px = reader.number(j, "bias_px", e.bias_px, where);
-  e.sigma = reader.number(j, "sigma", e.sigma, where);
-  e.confidence = reader.number(j, "confidence", e.confidence, where);
-  if (j.contains("views"))
-    for (const Json& v : reader.array(j, "views", where))
-      e.views.push_back(reader.integer(v, "an index of a view in " + where));
-  if (j.contains("covariance"))
-    for (const Json& c : reader.array(j, "covariance", where)) {
-      if (!c.is_number()) reader.fail("numbers as covariance of " + where, JsonReader::summary(c));
-      e.covariance.push_back(c.get<double>());
-    }
-  if (j.contains("determined"))
-    e.determined = reader.integer(j["determined"], "a count as determined in " + where);
+  e.opacity = j.number("opacity", e.opacity);
+  if (j.has("support_views")) e.support_views = j["support_views"].index(kMostCount);
+  e.rms_px = j.number("rms_px", e.rms_px);
+  e.bias_px = j.number("bias_px", e.bias_px);
+  e.sigma = j.number("sigma", e.sigma);
+  e.confidence = j.number("confidence", e.confidence);
+  if (j.has("views"))
+    for (const JsonValue& v : j["views"].elements()) e.views.push_back(v.index(kMostCount));
+  if (j.has("covariance")) e.covariance = j["covariance"].numbers();
+  if (j.has("determined")) e.determined = j["determined"].index(kMostCount);
   // Each third point of a chain of cubics is a joint.
   size_t at = 0;
   for (; spans && at + 2 < points.size(); at += 3) {
@@ -178,39 +160,28 @@ void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::strin
   out << "\n}\n";
 }
 
-Sketch sketch_of_members(const Json& j, const JsonReader& reader) {
+Sketch sketch_of_members(const JsonValue& object) {
   Sketch sketch;
-  const Json& nodes = reader.array(j, "nodes", "the file", kMostParts);
-  sketch.nodes.resize(3, nodes.size());
-  for (size_t i = 0; i < nodes.size(); ++i)
-    sketch.nodes.col(i) = reader.point(nodes[i], "node " + std::to_string(i));
-  const Json& strokes = reader.array(j, "strokes", "the file", kMostParts);
-  for (size_t i = 0; i < strokes.size(); ++i) {
-    read_stroke(reader, strokes[i], "stroke " + std::to_string(i), int(nodes.size()), &sketch);
+  const std::vector<JsonValue> nodes = object["nodes"].elements(kMostParts);
+  sketch.nodes.resize(3, Eigen::Index(nodes.size()));
+  for (size_t i = 0; i < nodes.size(); ++i) sketch.nodes.col(Eigen::Index(i)) = nodes[i].point();
+  for (const JsonValue& stroke : object["strokes"].elements(kMostParts)) {
+    read_stroke(stroke, nodes.size(), &sketch);
     if (sketch.strokes.size() > kMostParts)
-      reader.fail("at most " + std::to_string(kMostParts) + " pieces of curves", "more");
+      throw InputError(object.path, "at most " + std::to_string(kMostParts) + " pieces of curves",
+                       "more");
   }
   const std::vector<std::string> complaints = validate(sketch);
-  if (!complaints.empty())
-    reader.fail("a sound sketch",
-                complaints[0] + (complaints.size() > 1
-                                     ? " (and " + std::to_string(complaints.size() - 1) + " more)"
-                                     : ""));
-  return sketch;
+  if (complaints.empty()) return sketch;
+  const size_t more = complaints.size() - 1;
+  throw InputError(object.path, "a sound sketch",
+                   complaints[0] + (more ? " (and " + std::to_string(more) + " more)" : ""));
 }
 
 Sketch read_sketch_json(std::istream& in, const std::string& path) {
-  const JsonReader reader(path);
-  Json j;
-  try {
-    j = parse_json<Json>(in, path);
-  } catch (const Json::exception& e) {
-    reader.fail("a sketch as JSON", e.what());
-  }
-  const Json& version = reader.member(j, "format_version", "the file");
-  if (!version.is_number_integer() || version.get<double>() != kFormatVersion)
-    reader.fail("format_version " + std::to_string(kFormatVersion), JsonReader::summary(version));
-  return sketch_of_members(j, reader);
+  const JsonValue file = read_json(in, path, "a sketch as JSON");
+  file.expect_version(kFormatVersion);
+  return sketch_of_members(file);
 }
 
 }  // namespace sketchsplat

@@ -41,70 +41,45 @@ Json json_of_face(const SolidFace& face) {
   return {{"surface", face.surface}, {"reversed", face.reversed}, {"loops", loops}};
 }
 
-SurfaceKind kind_of(const JsonReader& reader, const Json& j, const std::string& where) {
-  const Json& name = reader.member(j, "kind", where);
+SurfaceKind kind_of(const JsonValue& j) {
+  const std::string name = j["kind"].text();
   for (int k = 0; k < kNumSurfaceKinds; ++k)
-    if (name.is_string() && name.get<std::string>() == surface_name(SurfaceKind(k)))
-      return SurfaceKind(k);
-  reader.fail("plane, cylinder, cone, sphere, torus or extrusion as \"kind\" of " + where,
-              JsonReader::summary(name));
+    if (name == surface_name(SurfaceKind(k))) return SurfaceKind(k);
+  j["kind"].complain("plane, cylinder, cone, sphere, torus or extrusion");
 }
 
-void read_profile(const JsonReader& reader, const Json& j, const std::string& where, Surface* s) {
-  const Json& profile = reader.member(j, "profile", where);
-  const Json& kind = reader.member(profile, "kind", "profile of " + where);
-  if (!kind.is_string() || !parse_kind(kind.get<std::string>(), &s->profile_kind))
-    reader.fail("a kind of curve as profile of " + where, JsonReader::summary(kind));
-  for (const Json& p : reader.array(profile, "points", "profile of " + where, kMostParts))
-    s->profile.push_back(reader.point(p, "a point of the profile of " + where));
+void read_profile(const JsonValue& profile, Surface* s) {
+  if (!parse_kind(profile["kind"].text(), &s->profile_kind))
+    profile["kind"].complain("a kind of curve");
+  for (const JsonValue& p : profile["points"].elements(kMostParts)) s->profile.push_back(p.point());
   if (int(s->profile.size()) != num_controls(s->profile_kind))
-    reader.fail(
-        std::to_string(num_controls(s->profile_kind)) + " points in the profile of " + where,
-        std::to_string(s->profile.size()));
+    profile["points"].complain(std::to_string(num_controls(s->profile_kind)) + " points");
 }
 
-Surface read_surface(const JsonReader& reader, const Json& j, const std::string& where) {
+Surface read_surface(const JsonValue& j) {
   constexpr double kNoDirection = 1e-6;  // off the length of a unit vector
   Surface s;
-  s.kind = kind_of(reader, j, where);
-  s.origin = reader.point(reader.member(j, "origin", where), "origin of " + where);
-  if (j.contains("axis")) s.axis = reader.point(j["axis"], "axis of " + where);
-  s.radius = reader.number(j, "radius", 0, where);
-  s.slope = reader.number(j, "slope", 0, where);
-  s.minor_radius = reader.number(j, "minor_radius", 0, where);
-  if (s.kind == SurfaceKind::kExtrusion) read_profile(reader, j, where, &s);
-  if (!(std::abs(s.axis.norm() - 1) < kNoDirection))
-    reader.fail("a unit vector as axis of " + where, JsonReader::summary(j["axis"]));
+  s.kind = kind_of(j);
+  s.origin = j["origin"].point();
+  if (j.has("axis")) s.axis = j["axis"].point();
+  s.radius = j.number("radius", 0);
+  s.slope = j.number("slope", 0);
+  s.minor_radius = j.number("minor_radius", 0);
+  if (s.kind == SurfaceKind::kExtrusion) read_profile(j["profile"], &s);
+  if (!(std::abs(s.axis.norm() - 1) < kNoDirection)) j["axis"].complain("a unit vector");
   return s;
 }
 
-int index_of(const JsonReader& reader, const Json& j, size_t count, const std::string& what) {
-  const int index = reader.integer(j, "an index of " + what);
-  if (size_t(index) >= count)
-    reader.fail("an index of " + what + " below " + std::to_string(count), std::to_string(index));
-  return index;
-}
-
-bool flag(const JsonReader& reader, const Json& j, const std::string& where) {
-  if (!j.is_boolean()) reader.fail("true or false as " + where, JsonReader::summary(j));
-  return j.get<bool>();
-}
-
-SolidFace read_face(const JsonReader& reader, const Json& j, const Solid& solid,
-                    const std::string& where) {
+SolidFace read_face(const JsonValue& j, const Solid& solid) {
   SolidFace face;
-  face.surface = index_of(reader, reader.member(j, "surface", where), solid.surfaces.size(),
-                          "a surface in " + where);
-  face.reversed = flag(reader, reader.member(j, "reversed", where), "\"reversed\" of " + where);
-  for (const Json& loop : reader.array(j, "loops", where, kMostParts)) {
+  face.surface = j["surface"].index(solid.surfaces.size());
+  face.reversed = j["reversed"].flag();
+  for (const JsonValue& loop : j["loops"].elements(kMostParts)) {
     face.loops.emplace_back();
-    if (!loop.is_array()) reader.fail("an array as loop of " + where, loop.type_name());
-    for (const Json& s : loop) {
-      if (!s.is_array() || s.size() != 2)
-        reader.fail("[edge, forward] in a loop of " + where, JsonReader::summary(s));
-      const int edge =
-          index_of(reader, s[0], size_t(solid.edges.size()), "an edge in a loop of " + where);
-      face.loops.back().push_back({edge, flag(reader, s[1], "direction in a loop of " + where)});
+    for (const JsonValue& s : loop.elements()) {
+      const std::vector<JsonValue> pair = s.elements();
+      if (pair.size() != 2) s.complain("[edge, forward]");
+      face.loops.back().push_back({pair[0].index(size_t(solid.edges.size())), pair[1].flag()});
     }
   }
   return face;
@@ -136,29 +111,18 @@ void write_solid_json(std::ostream& out, const Solid& solid, const std::string& 
 }
 
 Solid read_solid_json(std::istream& in, const std::string& path) {
-  const JsonReader reader(path);
-  Json j;
-  try {
-    j = parse_json<Json>(in, path);
-  } catch (const Json::exception& e) {
-    reader.fail("a solid as JSON", e.what());
-  }
-  const Json& version = reader.member(j, "format_version", "the file");
-  if (version != Json(kFormatVersion))
-    reader.fail("format_version " + std::to_string(kFormatVersion), JsonReader::summary(version));
+  const JsonValue file = read_json(in, path, "a solid as JSON");
+  file.expect_version(kFormatVersion);
   Solid solid;
-  solid.edges = sketch_of_members(reader.member(j, "edges", "the file"), reader);
+  solid.edges = sketch_of_members(file["edges"]);
   solid.inferred.assign(size_t(solid.edges.size()), false);
-  for (const Json& i : reader.array(j, "inferred", "the file"))
-    solid.inferred[size_t(index_of(reader, i, solid.inferred.size(), "an edge in \"inferred\""))] =
-        true;
-  const Json& surfaces = reader.array(j, "surfaces", "the file", kMostParts);
-  for (size_t i = 0; i < surfaces.size(); ++i)
-    solid.surfaces.push_back(read_surface(reader, surfaces[i], "surface " + std::to_string(i)));
-  const Json& faces = reader.array(j, "faces", "the file", kMostParts);
-  for (size_t i = 0; i < faces.size(); ++i)
-    solid.faces.push_back(read_face(reader, faces[i], solid, "face " + std::to_string(i)));
-  solid.gap = reader.number(j, "gap", 0, "the file");
+  for (const JsonValue& i : file["inferred"].elements())
+    solid.inferred[size_t(i.index(solid.inferred.size()))] = true;
+  for (const JsonValue& s : file["surfaces"].elements(kMostParts))
+    solid.surfaces.push_back(read_surface(s));
+  for (const JsonValue& f : file["faces"].elements(kMostParts))
+    solid.faces.push_back(read_face(f, solid));
+  solid.gap = file.number("gap", 0);
   return solid;
 }
 

@@ -113,10 +113,11 @@ JsonValue JsonValue::operator[](const std::string& key) const {
   return {{json, &*found}, path, where.empty() ? key : where + "." + key};
 }
 
-size_t JsonValue::size() const { return json->size(); }
-
-std::vector<JsonValue> JsonValue::elements() const {
+std::vector<JsonValue> JsonValue::elements(size_t most) const {
   if (!json->is_array()) complain("an array");
+  if (json->size() > most)
+    throw InputError(path, "at most " + std::to_string(most) + " " + where,
+                     std::to_string(json->size()));
   std::vector<JsonValue> all;
   for (size_t i = 0; i < json->size(); ++i) {
     all.push_back({{json, &(*json)[i]}, path, where + "[" + std::to_string(i) + "]"});
@@ -128,6 +129,53 @@ double JsonValue::number() const {
   if (json->is_null()) return std::numeric_limits<double>::quiet_NaN();
   if (!json->is_number()) complain("a number");
   return json->get<double>();
+}
+
+double JsonValue::number(const std::string& key, double absent) const {
+  if (!has(key)) return absent;
+  const JsonValue value = (*this)[key];
+  if (!value.json->is_number()) value.complain("a number");
+  return value.json->get<double>();
+}
+
+std::vector<double> JsonValue::numbers() const {
+  if (!json->is_array()) complain("an array");
+  std::vector<double> all;
+  for (const nlohmann::json& x : *json) {
+    if (!x.is_number()) complain("numbers");
+    all.push_back(x.get<double>());
+  }
+  return all;
+}
+
+int JsonValue::index(size_t count) const {
+  if (!json->is_number_integer() || !(json->get<double>() >= 0) ||
+      !(json->get<double>() < double(count)))
+    complain("an index below " + std::to_string(count));
+  return json->get<int>();
+}
+
+void JsonValue::expect_version(int version) const {
+  const JsonValue found = (*this)["format_version"];
+  if (!found.json->is_number_integer() || found.json->get<double>() != version)
+    throw InputError(path, "format_version " + std::to_string(version), describe(*found.json));
+}
+
+bool JsonValue::flag() const {
+  if (!json->is_boolean()) complain("true or false");
+  return json->get<bool>();
+}
+
+Eigen::Vector3d JsonValue::point() const {
+  constexpr double kLargest = 1e100;  // squares and cubes of it overflow
+  if (!json->is_array() || json->size() != 3) complain("three numbers");
+  Eigen::Vector3d p;
+  for (int k = 0; k < 3; ++k) {
+    if (!(*json)[size_t(k)].is_number()) complain("three numbers");
+    p[k] = (*json)[size_t(k)].get<double>();
+  }
+  if (!(p.cwiseAbs().maxCoeff() < kLargest)) complain("numbers below 1e100");
+  return p;
 }
 
 int JsonValue::positive_integer() const {
@@ -159,6 +207,14 @@ Eigen::MatrixXd JsonValue::matrix(int rows, int cols) const {
 
 void JsonValue::complain(const std::string& expected) const {
   throw InputError(path, expected + (where.empty() ? "" : " in " + where), describe(*json));
+}
+
+JsonValue read_json(std::istream& in, const std::string& path, const std::string& what) {
+  try {
+    return {std::make_shared<json>(parse_json<json>(in, path)), path, ""};
+  } catch (const json::exception& e) {
+    throw InputError(path, what, e.what());
+  }
 }
 
 JsonValue load_json(const std::string& path) {

@@ -52,19 +52,30 @@ struct JsonValue {
   bool has(const std::string& key) const;
   /// Member of an object. Throws InputError that names the key if it is not there.
   JsonValue operator[](const std::string& key) const;
-  size_t size() const;  ///< of an array or object; 0 of null, else 1
-  /// Elements of an array; throws InputError if it is none.
-  std::vector<JsonValue> elements() const;
-
-  double number() const;         ///< NaN if null. Throws InputError.
-  int positive_integer() const;  ///< Throws InputError.
-  std::string text() const;      ///< Throws InputError.
+  // All of these throw InputError.
+  /// Elements of an array of at most so many.
+  std::vector<JsonValue> elements(size_t most = size_t(-1)) const;
+  double number() const;  ///< NaN if null
+  /// Member of an object that need not be there, but must not be null.
+  double number(const std::string& key, double absent) const;
+  std::vector<double> numbers() const;  ///< of an array, none of them null
+  int positive_integer() const;
+  int index(size_t count) const;  ///< from 0, below `count`
+  /// Of an object whose "format_version" is not this.
+  void expect_version(int version) const;
+  bool flag() const;
+  std::string text() const;
+  Eigen::Vector3d point() const;  ///< three numbers below 1e100
   /// Nested rows of at least `rows` x `cols` numbers, of which the top-left block is returned; null
-  /// numbers become NaN. Throws InputError.
+  /// numbers become NaN.
   Eigen::MatrixXd matrix(int rows, int cols) const;
 
   [[noreturn]] void complain(const std::string& expected) const;
 };
+
+/// Parses what is left of a stream. Throws InputError that names `path` and says that it is not
+/// `what`, e.g. "a sketch as JSON".
+JsonValue read_json(std::istream& in, const std::string& path, const std::string& what);
 
 /// Parses a file. NaN and Infinity, which Python writes although JSON has no such numbers, become
 /// null. Throws InputError (one line).

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sketches/curve/curve_chain.h"
-#include "sketches/io/json_reader.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 
@@ -25,6 +25,6 @@ void write_sketch_members(std::ostream& out, const Sketch& sketch,
                           const std::vector<CurveChain>& chains);
 
 /// The sketch that these members are. Throws InputError.
-Sketch sketch_of_members(const Json& object, const JsonReader& reader);
+Sketch sketch_of_members(const JsonValue& object);
 
 }  // namespace sketchsplat

@@ -152,7 +152,7 @@ TEST(SketchJson, RefusesWhatIsNoJson) {
        {std::string(), std::string("{"), std::string("solid cube"), good.substr(0, good.size() / 2),
         good + "}", std::string("\xff\xfe\0\0", 4), std::string("{\"format_version\": NaN}")})
     EXPECT_THAT(complaint(text), StartsWith("a/sketch.json: expected a sketch as JSON, found "));
-  EXPECT_THAT(complaint("[]"), HasSubstr("an object as the file, found array"));
+  EXPECT_THAT(complaint("[]"), HasSubstr("an object with the key \"format_version\", found []"));
   const std::string deep = std::string(200000, '[') + std::string(200000, ']');
   EXPECT_THAT(complaint(deep), HasSubstr("in one another, found 200000"));
   EXPECT_THAT(complaint(changed([&](auto& j) { j["nodes"] = "[[["; })), HasSubstr("nodes"));
@@ -163,33 +163,34 @@ TEST(SketchJson, RefusesAnotherVersion) {
     EXPECT_THAT(
         complaint(changed([&](auto& j) { j["format_version"] = nlohmann::json::parse(version); })),
         HasSubstr(std::string("expected format_version 1, found ") + version));
-  EXPECT_THAT(complaint("{}"), HasSubstr("found no such key"));
+  EXPECT_THAT(complaint("{}"), HasSubstr("the key \"format_version\", found none"));
 }
 
 TEST(SketchJson, NamesTheStrokeThatIsBroken) {
   const auto because = [](auto change) { return complaint(changed(change)); };
   EXPECT_THAT(because([](auto& j) { j["strokes"][1]["nodes"][1] = 4; }),
-              HasSubstr("expected an index of a node in stroke 1 below 4, found 4"));
+              HasSubstr("expected an index below 4 in strokes[1].nodes[1], found 4"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][1]["nodes"][1] = -1; }), HasSubstr("found -1"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][1]["nodes"][1] = 1e30; }), HasSubstr("1e+30"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][1]["nodes"][1] = 1.5; }), HasSubstr("found 1.5"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][0]["nodes"] = {1}; }),
-              HasSubstr("two nodes in stroke 0, found 1"));
+              HasSubstr("two nodes in strokes[0].nodes, found [1]"));
   EXPECT_THAT(because([](auto& j) {
                 j["strokes"][4]["nodes"] = {1, 2};
               }),
-              HasSubstr("no nodes in stroke 4, found 2"));
+              HasSubstr("no nodes in strokes[4].nodes, found [1,2]"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][2]["handles"].erase(0); }),
-              HasSubstr("2 handles in stroke 2, or 3 n - 1 for n cubics, found 1"));
+              HasSubstr("2 handles, or 3 n - 1 for n cubics in strokes[2].handles, found [["));
   EXPECT_THAT(because([](auto& j) { j["strokes"][2]["kind"] = "spline"; }),
-              HasSubstr("as \"kind\" of stroke 2, found \"spline\""));
+              HasSubstr("in strokes[2].kind, found \"spline\""));
   EXPECT_THAT(because([](auto& j) { j["strokes"][2].erase("kind"); }),
-              HasSubstr("\"kind\" in stroke 2"));
-  EXPECT_THAT(because([](auto& j) { j["strokes"][2] = 7; }), HasSubstr("an object as stroke 2"));
+              HasSubstr("\"kind\" in strokes[2]"));
+  EXPECT_THAT(because([](auto& j) { j["strokes"][2] = 7; }),
+              HasSubstr("an object with the key \"kind\" in strokes[2]"));
   EXPECT_THAT(because([](auto& j) { j["strokes"] = nullptr; }),
-              HasSubstr("an array as \"strokes\""));
+              HasSubstr("an array in strokes, found null"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][3]["opacity"] = "high"; }),
-              HasSubstr("a number as \"opacity\" in stroke 3"));
+              HasSubstr("a number in strokes[3].opacity"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][3]["opacity"] = 2.0; }),
               HasSubstr("stroke 3: has an opacity outside"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][3]["support_views"] = -2; }), HasSubstr("-2"));
@@ -198,10 +199,10 @@ TEST(SketchJson, NamesTheStrokeThatIsBroken) {
 TEST(SketchJson, RefusesNumbersThatAreNone) {
   const auto because = [](auto change) { return complaint(changed(change)); };
   EXPECT_THAT(because([](auto& j) { j["nodes"][2][1] = nullptr; }),  // what NaN is written as
-              HasSubstr("three numbers as node 2, found [1.2,null,0.35]"));
+              HasSubstr("three numbers in nodes[2], found [1.2,null,0.35]"));
   EXPECT_THAT(because([](auto& j) { j["nodes"][2] = {1, 2}; }), HasSubstr("three numbers"));
   EXPECT_THAT(because([](auto& j) { j["strokes"][1]["handles"][0][0] = "x"; }),
-              HasSubstr("three numbers as a handle in stroke 1"));
+              HasSubstr("three numbers in strokes[1].handles[0]"));
   std::string text = text_of(five_kinds());
   text.replace(text.find("[0.1,"), 5, "[1e999,");
   EXPECT_THAT(complaint(text), HasSubstr("a sketch as JSON"));
