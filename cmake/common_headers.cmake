@@ -4,7 +4,7 @@
 option(SKETCHSPLAT_COMMON_HEADERS "Compile headers that most files read once (precompiled)" ON)
 
 set(common_headers
-  <Eigen/Cholesky> <Eigen/Core> <Eigen/Eigenvalues> <Eigen/Geometry>
+  <Eigen/Core> <Eigen/Geometry>
   <algorithm> <array> <cmath> <cstdint> <cstdio> <filesystem> <fstream> <functional> <limits> <map>
   <memory> <numeric> <optional> <set> <sstream> <stdexcept> <string> <utility> <vector>)
 
