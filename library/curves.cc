@@ -70,8 +70,6 @@ void write_as(const std::string& ending, const std::string& name, const Sketch& 
     write_step(out, sketch, step);
   } else if (ending == ".dxf") {
     write_dxf(out, sketch, {options.scale, unit});
-  } else if (ending == ".svg") {
-    write_svg(out, sketch, {name, options.scale, unit});
   } else if (ending == ".obj") {
     write_obj(out, sketch, 1e-4, options.scale);
   } else if (ending == ".ply") {
@@ -125,9 +123,9 @@ Eigen::Matrix3Xd CurveSketch::sample(int curve, double spacing) const {
 
 void CurveSketch::write(const std::string& path, const WriteOptions& options) const {
   const std::string ending = ending_of(path);
-  const char* const known[] = {".step", ".dxf", ".svg", ".obj", ".ply", ".json"};
+  const char* const known[] = {".step", ".dxf", ".obj", ".ply", ".json"};
   if (std::find(std::begin(known), std::end(known), ending) == std::end(known))
-    throw std::invalid_argument(path + ": expected .step, .dxf, .svg, .obj, .ply or .json");
+    throw std::invalid_argument(path + ": expected .step, .dxf, .obj, .ply or .json");
   if (!(options.scale > 0)) throw std::invalid_argument("scale: expected a positive number");
   const std::string name = std::filesystem::path(path).stem().string();
   write_atomically(path, [&](std::ostream& out) {

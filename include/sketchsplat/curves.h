@@ -53,8 +53,8 @@ enum class Ending {
 
 /// How files for CAD programs are written.
 struct WriteOptions {
-  double scale = 1;         ///< units of the file per world unit; STEP, DXF, SVG, OBJ
-  std::string unit = "mm";  ///< "mm", "cm", "m" or "inch"; STEP, DXF, SVG
+  double scale = 1;         ///< units of the file per world unit; STEP, DXF, OBJ
+  std::string unit = "mm";  ///< "mm", "cm", "m" or "inch"; STEP, DXF
   bool faces = false;       ///< closed planar loops as faces; STEP
 };
 
@@ -92,7 +92,7 @@ class CurveSketch {
   /// Throws std::invalid_argument if there is no such curve, or the spacing is not positive.
   Eigen::Matrix3Xd sample(int curve, double spacing) const;
 
-  /// Writes a file in the format of its ending: .step, .dxf, .svg, .obj, .ply (points), .json (as
+  /// Writes a file in the format of its ending: .step, .dxf, .obj, .ply (points), .json (as
   /// sketch.json); whole or not at all. Throws std::invalid_argument (ending, unit) or
   /// std::runtime_error (cannot be written).
   void write(const std::string& path, const WriteOptions& options = {}) const;

@@ -217,7 +217,7 @@ void bind_curves(py::module_* m) {
             s.write(path, options);
           },
           py::arg("path"), py::kw_only(), py::arg("scale") = 1.0, py::arg("unit") = "mm",
-          py::arg("faces") = false, "Writes .step, .dxf, .svg, .obj, .ply or .json")
+          py::arg("faces") = false, "Writes .step, .dxf, .obj, .ply or .json")
       .def("__len__", [](const CurveSketch& s) { return s.curves.size(); });
 }
 

@@ -38,15 +38,15 @@ struct ExportArguments {
 
 constexpr char kNoTags[] = "--scale-by tag is for reconstruct: a sketch holds no tags";
 
-const std::vector<std::string> kFormats = {"step", "dxf", "svg",        "obj",
-                                           "glb",  "ply", "parametric", "sketch"};
+const std::vector<std::string> kFormats = {"step", "dxf",        "obj",   "glb",
+                                           "ply",  "parametric", "sketch"};
 
 // The format that the ending of a file name stands for; empty if none.
 std::string format_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".step" || ending == ".stp") return "step";
-  for (const char* same : {"dxf", "svg", "obj", "glb", "ply"})
+  for (const char* same : {"dxf", "obj", "glb", "ply"})
     if (ending == std::string(".") + same) return same;
   if (ending == ".json") return "parametric";
   return "";
@@ -103,8 +103,6 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
     write_step(out, sketch, step_options(sketch, name, cad));
   } else if (format == "dxf") {
     write_dxf(out, sketch, {cad.scale, cad.unit});
-  } else if (format == "svg") {
-    write_svg(out, sketch, {name, cad.scale, cad.unit});
   } else if (format == "obj") {
     write_obj(out, sketch, arguments.deflection, cad.scale);
   } else if (format == "glb") {
@@ -122,15 +120,14 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
 
 // Options that the format cannot obey.
 void check(const ExportArguments& arguments, const std::string& format) {
-  const bool cad =
-      format == "step" || format == "dxf" || format == "svg" || format == "obj" || format == "glb";
+  const bool cad = format == "step" || format == "dxf" || format == "obj" || format == "glb";
   check_scale(arguments.cad);
   if (wants_tags(arguments.cad)) throw UsageError(kNoTags);
   if (!cad && format != "sketch" && has_reference(arguments.cad))
-    throw UsageError("--scale-by is for step, dxf, svg, obj and sketch: " + format +
+    throw UsageError("--scale-by is for step, dxf, obj and sketch: " + format +
                      " is in the scene's own units");
   if (!cad && arguments.cad.scale != 1)
-    throw UsageError("--scale is for step, dxf, svg, obj and glb: " + format +
+    throw UsageError("--scale is for step, dxf, obj and glb: " + format +
                      " is in the scene's own units");
   if (format != "step" && arguments.cad.faces)
     throw UsageError("--faces is for step: " + format + " holds curves only");

@@ -17,7 +17,7 @@ using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 
 constexpr double kSlender = 0.05;  // least ratio of the semi-axes
-constexpr double kFar = 50;        // largest semi-axis, times the spread
+constexpr double kLongest = 50;        // largest semi-axis, times the spread
 constexpr int kSteps = 12;
 
 // Centre, p and q as columns; points are normalised.
@@ -69,7 +69,7 @@ bool is_usable(const Ellipse& e) {
   if (!e.allFinite()) return false;
   const EllipseAxes axes = principal_axes(e.col(1), e.col(2));
   const double a = axes.major.norm();
-  return a < kFar && axes.minor.norm() > kSlender * a;
+  return a < kLongest && axes.minor.norm() > kSlender * a;
 }
 
 // Angles about a start whose semi-axes are orthogonal, unwrapped along the run.

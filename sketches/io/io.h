@@ -63,16 +63,6 @@ struct DxfOptions {
 /// than 1e-7 of the extent become lines.
 void write_dxf(std::ostream& out, const Sketch& sketch, const DxfOptions& options = {});
 
-struct SvgOptions {
-  std::string name = "sketch";                ///< UTF-8
-  double scale = 1.0;                         ///< units per world unit
-  LengthUnit unit = LengthUnit::kMillimetre;  ///< of the part's size that is stated
-};
-/// A3 sheet in mm with front, top, right and isometric view in third-angle projection, z up, front
-/// along y; at the largest scale of 1, 2, 5 x 10^k that fits. Nothing is hidden. Lines, elliptical
-/// arcs and cubics are exact; each path is of class `stroke` and its kind.
-void write_svg(std::ostream& out, const Sketch& sketch, const SvgOptions& options = {});
-
 /// Binary little-endian PLY: samples of all strokes every `spacing` world units with
 /// `stroke_index`.
 void write_edge_points(std::ostream& out, const Sketch& sketch, double spacing);

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <vector>
 
 #include "sketches/curve/curve.h"
 #include "sketches/io/json.h"
+#include "sketches/io/little_endian.h"
 
 namespace sketchsplat {
 namespace {
@@ -21,16 +20,6 @@ constexpr StrokeKind kKinds[] = {StrokeKind::kLine,        StrokeKind::kArc,
 constexpr int kChords = 64;  // of a curve that is no line
 // Numbers of the format (Khronos, glTF 2.0 specification).
 constexpr int kFloat = 5126, kLines = 1, kVertices = 34962;
-
-// Little-endian whatever the machine is.
-void append(std::uint32_t bits, std::string* bytes) {
-  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(char(bits >> shift & 0xff));
-}
-void append(float x, std::string* bytes) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  append(bits, bytes);
-}
 
 // Both ends of every chord of all strokes of a kind, one after another.
 std::vector<Eigen::Vector3d> chord_ends(const Sketch& sketch, StrokeKind kind) {

@@ -15,7 +15,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kSketchVersion = 1;
 constexpr size_t kMostCount = 2000000000;  // of views
 
 // What a reader who does not know our control points wants to know; we do not read it back.
@@ -144,7 +144,7 @@ void write_sketch_members(std::ostream& out, const Sketch& sketch,
 }
 
 void write_sketch_json(std::ostream& out, const Sketch& sketch, const std::string& extra) {
-  out << "{\n  \"format_version\": " << kFormatVersion << ",\n";
+  out << "{\n  \"format_version\": " << kSketchVersion << ",\n";
   if (!extra.empty()) {
     Json members;
     try {
@@ -180,7 +180,7 @@ Sketch sketch_of_members(const JsonValue& object) {
 
 Sketch read_sketch_json(std::istream& in, const std::string& path) {
   const JsonValue file = read_json(in, path, "a sketch as JSON");
-  file.expect_version(kFormatVersion);
+  file.expect_version(kSketchVersion);
   return sketch_of_members(file);
 }
 

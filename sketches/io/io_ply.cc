@@ -1,26 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <cstdint>
-#include <cstring>
 #include <ostream>
 
 #include "sketches/curve/curve_chain.h"
 #include "sketches/io/io.h"
+#include "sketches/io/little_endian.h"
 
 namespace sketchsplat {
-namespace {
-
-// Little-endian whatever the machine is.
-void append(uint32_t bits, std::string* bytes) {
-  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(char(bits >> shift & 0xff));
-}
-
-void append(float x, std::string* bytes) {
-  uint32_t bits;
-  std::memcpy(&bits, &x, sizeof(bits));
-  append(bits, bytes);
-}
-
-}  // namespace
 
 void write_edge_points(std::ostream& out, const Sketch& sketch, double spacing) {
   std::string bytes;

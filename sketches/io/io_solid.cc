@@ -14,7 +14,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kSolidVersion = 1;
 
 Json json_of_surface(const Surface& s) {
   Json out = {{"kind", surface_name(s.kind)}, {"origin", json_of_point(s.origin)}};
@@ -88,7 +88,7 @@ SolidFace read_face(const JsonValue& j, const Solid& solid) {
 }  // namespace
 
 void write_solid_json(std::ostream& out, const Solid& solid, const std::string& extra) {
-  out << "{\n  \"format_version\": " << kFormatVersion << ",\n";
+  out << "{\n  \"format_version\": " << kSolidVersion << ",\n";
   const Json members = extra.empty() ? Json::object() : parse_json<Json>(extra);
   for (const auto& [key, value] : members.items())
     out << "  " << json_text(Json(key)) << ": " << json_text(value) << ",\n";
@@ -112,7 +112,7 @@ void write_solid_json(std::ostream& out, const Solid& solid, const std::string& 
 
 Solid read_solid_json(std::istream& in, const std::string& path) {
   const JsonValue file = read_json(in, path, "a solid as JSON");
-  file.expect_version(kFormatVersion);
+  file.expect_version(kSolidVersion);
   Solid solid;
   solid.edges = sketch_of_members(file["edges"]);
   solid.inferred.assign(size_t(solid.edges.size()), false);

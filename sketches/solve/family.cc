@@ -30,7 +30,7 @@ struct Frame {
   double extent;
 };
 
-Eigen::Matrix3d places_of(const Sketch& sketch, int stroke) {
+Eigen::Matrix3d points_of_stroke(const Sketch& sketch, int stroke) {
   Eigen::Matrix3d out;
   if (!is_closed(sketch.strokes[stroke].kind)) {
     for (int k = 0; k < 3; ++k) {
@@ -50,7 +50,7 @@ Eigen::Matrix3d places_of(const Sketch& sketch, int stroke) {
 
 std::vector<Places> all_places(const Sketch& sketch) {
   std::vector<Places> out;
-  for (int s = 0; s < sketch.size(); ++s) out.push_back(places_of(sketch, s));
+  for (int s = 0; s < sketch.size(); ++s) out.push_back(points_of_stroke(sketch, s));
   return out;
 }
 

@@ -109,34 +109,5 @@ TEST(Dxf, HoldsEveryKindOnItsLayerAndInItsPlace) {
   EXPECT_EQ(parse_dxf(dxf_of(Sketch())).last, "EOF");
 }
 
-TEST(Svg, DrawsEveryStrokeInFourViewsAndStatesItsScale) {
-  std::ostringstream out, empty;
-  write_svg(out, all_kinds(), {"a < b", 50, LengthUnit::kMillimetre});
-  const std::string text = out.str();
-  int paths = 0;
-  for (size_t at = 0; (at = text.find("<path class=\"stroke ", at)) != std::string::npos; ++at)
-    ++paths;
-  EXPECT_EQ(paths, 4 * all_kinds().size());
-  EXPECT_NE(text.find("scale 1 : 1"), std::string::npos);
-  EXPECT_NE(text.find("a &#60; b"), std::string::npos);
-  EXPECT_EQ(text.find("nan"), std::string::npos);
-  write_svg(empty, Sketch());
-  EXPECT_NE(empty.str().find("</svg>"), std::string::npos);
-}
-
-TEST(Svg, DrawsACircleOfTenMillimetresAsSuchAndItsSideAsALine) {
-  Sketch s;
-  s.add_stroke(StrokeKind::kCircle, -1, -1, {{1, 2, 3}, {0, 0, 1}});
-  std::ostringstream out;
-  write_svg(out, s, {"disc", 10, LengthUnit::kMillimetre});
-  const std::string text = out.str();
-  const size_t top = text.find("<g id=\"top\">"), front = text.find("<g id=\"front\">");
-  ASSERT_NE(text.find("scale 5 : 1"), std::string::npos);
-  EXPECT_EQ(text.find(" A50,50 ", top), text.find(" A", top)) << "radius 10 mm, five times";
-  const std::string side = text.substr(front, text.find("</g>", front) - front);
-  EXPECT_EQ(side.find(" A"), std::string::npos);
-  EXPECT_NE(side.find(" L"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace sketchsplat

@@ -24,10 +24,6 @@ struct Named {
 std::vector<Named> all_passes() {
   return {{"merge_endpoints", merge_endpoints},
           {"merge_collinear", merge_collinear},
-          {"remove_low_opacity",
-           [](const Sketch& s, const TopologyOptions&, const StrokePoints& points) {
-             return remove_low_opacity(s, 0.5, points);
-           }},
           {"simplify", [](const Sketch& s, const TopologyOptions& o, const StrokePoints& points) {
              Simplified r = simplify(s, o, points);
              EXPECT_TRUE(r.settled);

@@ -1,40 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "topology/passes/simplify.h"
 
-#include <limits>
-
 #include "tests/topology/build_sketch.h"
 
 namespace sketchsplat {
 namespace {
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-
-TEST(Filters, LowOrUnknownOpacityGoes) {
-  Sketch s;
-  add_line(&s, {0, 0, 0}, {10, 0, 0}, with_opacity(0.3));
-  add_line(&s, {0, 5, 0}, {10, 5, 0}, with_opacity(0.1));
-  add_line(&s, {0, 9, 0}, {10, 9, 0}, with_opacity(kNan));
-  const PassResult r = remove_low_opacity(s, 0.3);
-  expect_sound(r, s);
-  EXPECT_THAT(r.remap.stroke, testing::ElementsAre(0, -1, -1));
-  EXPECT_EQ(r.changes, 2);
-  EXPECT_EQ(r.sketch.nodes.cols(), 2);
-}
-
-TEST(Filters, TooFewViewsOrTooLargeResidualsGo) {
-  Sketch s;
-  const std::vector<std::pair<int, double>> seen = {{3, 0.5}, {2, 0.5}, {9, 1.5}, {9, kNan}};
-  for (size_t i = 0; i < seen.size(); ++i) {
-    Evidence e;
-    e.support_views = seen[i].first;
-    e.rms_px = seen[i].second;
-    add_line(&s, {0, 5. * i, 0}, {10, 5. * i, 0}, e);
-  }
-  const PassResult r = visibility_filter(s, 3, 1.0);
-  expect_sound(r, s);
-  EXPECT_THAT(r.remap.stroke, testing::ElementsAre(0, -1, -1, -1));
-}
 
 TEST(Simplify, AFragmentedBoxBecomesTwelveEdgesAndEightCorners) {
   // Every edge in two pieces with a gap of 4 px, ends 1 px short of the corners.
@@ -93,13 +63,12 @@ TEST(Simplify, ASlotStaysTwoLinesAndTwoArcs) {
 
 TEST(Simplify, CountsAreNamed) {
   Sketch s;
-  add_line(&s, {0, 0, 0}, {10, 0, 0}, with_opacity(0.1));
-  TopologyOptions options = one_pixel();
-  options.min_opacity = 0.5;
-  const Simplified r = simplify(s, options);
+  add_line(&s, {0, 0, 0}, {10, 0, 0});
+  add_line(&s, {11, 0, 0}, {20, 0, 0});
+  const Simplified r = simplify(s, one_pixel());
   EXPECT_EQ(r.counts.total(), 1);
   EXPECT_EQ(r.counts.rounds, 2);
-  EXPECT_THAT(r.counts.named(), testing::Contains(testing::Pair("low_opacity", 1)));
+  EXPECT_THAT(r.counts.named(), testing::Contains(testing::Pair("collinear", 1)));
   int sum = 0;
   for (const auto& [name, count] : r.counts.named()) sum += count;
   EXPECT_EQ(sum, r.counts.total());

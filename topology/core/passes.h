@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <limits>
-
 #include "sketches/graph/sketch.h"
 #include "topology/core/remap.h"
 
@@ -22,10 +20,6 @@ struct TopologyOptions : DescriptionCost {
   double endpoint_px = 3;  ///< between ends that may become one node
   double gap_px = 6;       ///< between the ends of two pieces that may be one curve
   double offset_px = 1.5;  ///< of either from the other where they run side by side
-
-  double min_opacity = 0;     ///< see remove_low_opacity
-  int min_support_views = 0;  ///< see visibility_filter
-  double max_rms_px = std::numeric_limits<double>::infinity();
 };
 
 // The merges change a sketch where its description becomes shorter: misfit of the points where the
@@ -58,13 +52,5 @@ PassResult merge_endpoints(const Sketch& sketch, const TopologyOptions& options,
 /// Never through a node that other strokes share, nor over a gap where another stroke ends.
 PassResult merge_collinear(const Sketch& sketch, const TopologyOptions& options,
                            const StrokePoints& points = {});
-
-/// Removes strokes whose opacity is below the threshold, or NaN.
-PassResult remove_low_opacity(const Sketch& sketch, double min_opacity,
-                              const StrokePoints& points = {});
-
-/// Removes strokes that fewer views see, or that lie farther from their edgels (or NaN).
-PassResult visibility_filter(const Sketch& sketch, int min_support_views, double max_rms_px,
-                             const StrokePoints& points = {});
 
 }  // namespace sketchsplat

@@ -10,10 +10,7 @@ constexpr int kMaxRounds = 20;
 }
 
 std::vector<std::pair<std::string, int>> SimplifyCounts::named() const {
-  return {{"low_opacity", low_opacity},
-          {"unseen", unseen},
-          {"collinear", collinear},
-          {"endpoints", endpoints}};
+  return {{"collinear", collinear}, {"endpoints", endpoints}};
 }
 
 Simplified simplify(const Sketch& sketch, const TopologyOptions& options,
@@ -35,9 +32,6 @@ Simplified simplify(const Sketch& sketch, const TopologyOptions& options,
       break;
     }
     before = n.total();
-    take(remove_low_opacity(out.sketch, options.min_opacity, at), &n.low_opacity);
-    take(visibility_filter(out.sketch, options.min_support_views, options.max_rms_px, at),
-         &n.unseen);
     take(merge_collinear(out.sketch, options, at), &n.collinear);
     take(merge_endpoints(out.sketch, options, at), &n.endpoints);
   }

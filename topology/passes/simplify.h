@@ -11,10 +11,10 @@ namespace sketchsplat {
 
 /// Changes made by each pass, over all rounds.
 struct SimplifyCounts {
-  int low_opacity = 0, unseen = 0, collinear = 0, endpoints = 0;
+  int collinear = 0, endpoints = 0;
   int rounds = 0;  ///< including the last one, which changed nothing
 
-  int total() const { return low_opacity + unseen + collinear + endpoints; }
+  int total() const { return collinear + endpoints; }
   /// For reports: name and count of each pass, in the order in which they run.
   std::vector<std::pair<std::string, int>> named() const;
 };
@@ -27,9 +27,8 @@ struct Simplified {
   bool settled = true;  ///< false if the bound on rounds was reached while things still changed
 };
 
-/// Runs all passes in rounds until nothing changes: what has no evidence goes first, then pieces of
-/// one curve become one (before their short ends are taken for noise), and end points are joined
-/// last, when few are left.
+/// Runs both passes in rounds until nothing changes: pieces of one curve become one before their
+/// short ends are taken for noise, and end points are joined last, when few are left.
 Simplified simplify(const Sketch& sketch, const TopologyOptions& options,
                     const StrokePoints& points = {});
 
