@@ -13,6 +13,7 @@
 
 #include "datasets/types/errors.h"
 #include "sketches/io/json.h"
+#include "sketches/io/whole_file.h"
 
 namespace sketchsplat {
 namespace {

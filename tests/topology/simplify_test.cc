@@ -86,7 +86,7 @@ TEST(Simplify, NothingAndOneStrokeStayAsTheyAre) {
 TEST(Simplify, StrokesWithoutExtentOrWithNanGo) {
   Sketch s;
   add_line(&s, {1, 1, 1}, {1, 1, 1});
-  add_line(&s, {0, 0, 0}, {kNan, 0, 0});
+  add_line(&s, {0, 0, 0}, {std::nan(""), 0, 0});
   add_bezier(&s, {5, 5, 5}, {5, 5, 5}, {5, 5, 5}, {5, 5, 5});
   s.add_stroke(StrokeKind::kCircle, -1, -1, {Vector3d(0, 0, 0), Vector3d(0, 0, 0)});
   s.add_stroke(StrokeKind::kEllipse, -1, -1,

@@ -6,7 +6,7 @@
 namespace sketchsplat {
 
 namespace {
-constexpr int kMaxRounds = 20;
+constexpr int kMostRounds = 20;
 }
 
 std::vector<std::pair<std::string, int>> SimplifyCounts::named() const {
@@ -27,7 +27,7 @@ Simplified simplify(const Sketch& sketch, const TopologyOptions& options,
   };
   SimplifyCounts& n = out.counts;
   for (int before = -1; before != n.total(); ++n.rounds) {
-    if (n.rounds == kMaxRounds) {
+    if (n.rounds == kMostRounds) {
       out.settled = false;
       break;
     }
