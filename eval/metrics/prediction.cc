@@ -16,6 +16,7 @@
 #include "sketches/curve/curve_chain.h"
 #include "sketches/io/io.h"
 #include "sketches/io/json.h"
+#include "sketches/io/whole_file.h"
 
 namespace fs = std::filesystem;
 using nlohmann::json;

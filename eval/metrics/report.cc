@@ -11,8 +11,6 @@
 #include "eval/metrics/csv.h"
 #include "sketches/io/json.h"
 
-using Json;
-
 namespace sketchsplat {
 namespace {
 
