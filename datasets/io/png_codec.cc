@@ -47,16 +47,13 @@ struct PngState {
 template <typename T, int kChannels>
 void append_row(const png_byte* row, float largest, Planes* planes) {
   const int width = planes->width;
-  float* out[kChannels];
+  const T* in = reinterpret_cast<const T*>(row);
   for (int c = 0; c < kChannels; ++c) {
     // Growing row by row keeps the zeros of resize() in the cache; all is reserved.
     std::vector<float>& plane = planes->plane[c];
     plane.resize(plane.size() + width);
-    out[c] = plane.data() + plane.size() - width;
-  }
-  const T* in = reinterpret_cast<const T*>(row);
-  for (int x = 0; x < width; ++x) {
-    for (int c = 0; c < kChannels; ++c) out[c][x] = float(in[x * kChannels + c]) / largest;
+    float* out = plane.data() + plane.size() - width;
+    for (int x = 0; x < width; ++x) out[x] = float(in[x * kChannels + c]) / largest;
   }
 }
 
@@ -93,6 +90,7 @@ bool decode(FILE* file, size_t file_size, PngState* state, Planes* planes) {
   png_infop info = state->info;
   if (setjmp(png_jmpbuf(png))) return false;
   png_init_io(png, file);
+  png_set_option(png, PNG_IGNORE_ADLER32, PNG_OPTION_ON);  // each chunk has a checksum of its own
   png_read_info(png, info);
   planes->width = int(png_get_image_width(png, info));
   planes->height = int(png_get_image_height(png, info));

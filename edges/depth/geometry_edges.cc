@@ -6,19 +6,20 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/types/degree.h"
 #include "datasets/types/median.h"
 #include "edges/depth/geometry_places.h"
 #include "edges/depth/geometry_sides.h"
 #include "edges/image/chain.h"
 #include "edges/image/edgel_parabola.h"
 #include "edges/image/gradient.h"
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kSharp = 2.5;    // [px] width (one sigma) above which a turn is a round surface
 constexpr double kMoves = 1.5;    // [px] a place may move by when it is measured
 constexpr double kOneEdge = 2.2;  // [px] within which two kinds of evidence are one edge
@@ -339,8 +340,7 @@ EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
   if (box.empty()) return map;
   EdgelMap found = edges_of(cut_maps(maps, box), camera.cut(box.x, box.y, box.width, box.height),
                             options, noise);
-  for (int y = 0; y < box.height; ++y)
-    std::copy_n(found.mask.row(y), box.width, map.mask.row(box.y + y) + box.x);
+  mat_of(found.mask).copyTo(mat_of(map.mask)(box));
   for (Edgel& e : found.edgels) e.x += float(box.x), e.y += float(box.y);
   map.edgels = std::move(found.edgels);
   map.chain = std::move(found.chain);

@@ -6,15 +6,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "edges/image/gradient.h"
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 namespace {
 
 using Eigen::Vector3d;
-
-cv::Mat1f as_mat(const Image<float>& image) {
-  return cv::Mat1f(image.height, image.width, const_cast<float*>(image.data.data())).clone();
-}
 
 // Values beyond the object: those of its nearest pixel.
 void extend(const cv::Mat1b& valid, const std::vector<cv::Mat1f*>& values) {
@@ -62,8 +59,7 @@ double focal(const Camera& camera) { return std::sqrt(camera.fx * camera.fy); }
 cv::Rect object_box(const GeometryMaps& maps) {
   constexpr int kMargin = 16;  // [px]
   const int w = maps.width(), h = maps.height();
-  const cv::Mat1f alpha(h, w, const_cast<float*>(maps.alpha.data.data()));
-  const cv::Rect object = cv::boundingRect(alpha > 0);
+  const cv::Rect object = cv::boundingRect(mat_of(maps.alpha) > 0);
   if (object.empty()) return object;
   const cv::Rect wider(object.x - kMargin, object.y - kMargin, object.width + 2 * kMargin,
                        object.height + 2 * kMargin);
@@ -88,10 +84,10 @@ void measure_activity(const Slopes& depth, const Slopes& normal, double jump_px,
 GeometryFields make_fields(const GeometryMaps& maps, const Camera& camera) {
   GeometryFields f;
   f.camera = camera;
-  f.alpha = as_mat(maps.alpha);
-  f.inverse = as_mat(maps.depth);
+  f.alpha = mat_of(maps.alpha).clone();
+  f.inverse = mat_of(maps.depth).clone();
   f.valid.create(maps.height(), maps.width());
-  for (int c = 0; c < 3; ++c) f.normal[c] = as_mat(maps.normal[c]);
+  for (int c = 0; c < 3; ++c) f.normal[c] = mat_of(maps.normal[c]).clone();
   for (size_t i = 0; i < maps.depth.data.size(); ++i) {
     const int y = int(i / maps.width()), x = int(i % maps.width());
     f.valid(y, x) = holds_object(maps, i);

@@ -35,13 +35,29 @@ std::array<int, 2> continuations(const Candidates& c, int i, bool signed_normals
   return best;
 }
 
+// Continuations of those that anybody asks for.
+class Continuations {
+ public:
+  Continuations(const Candidates& c, bool signed_normals)
+      : c_(c), signed_normals_(signed_normals), known_(c.edgels.size(), {kUnknown, kUnknown}) {}
+  int of(int i, int side) {
+    if (known_[i][0] == kUnknown) known_[i] = continuations(c_, i, signed_normals_);
+    return known_[i][side];
+  }
+
+ private:
+  static constexpr int kUnknown = -2;
+  const Candidates& c_;
+  const bool signed_normals_;
+  std::vector<std::array<int, 2>> known_;
+};
+
 // Follows continuations from `seed`, which leaves by `side` of its tangent. Where normals have no
 // sign, the side changes with it.
 template <typename Visit>
-void follow(const Candidates& c, const std::vector<int> (&next)[2], int seed, int side,
-            const Visit& visit) {
+void follow(const Candidates& c, Continuations* next, int seed, int side, const Visit& visit) {
   for (int i = seed;;) {
-    const int j = next[side][i];
+    const int j = next->of(i, side);
     if (j < 0 || !visit(j)) return;
     if (c.edgels[i].nx * c.edgels[j].nx + c.edgels[i].ny * c.edgels[j].ny < 0) side = 1 - side;
     i = j;
@@ -53,11 +69,7 @@ void follow(const Candidates& c, const std::vector<int> (&next)[2], int seed, in
 void chain_edgels(const Candidates& c, float high, int min_chain, bool signed_normals,
                   EdgelMap* map) {
   const int n = int(c.edgels.size());
-  std::vector<int> next[2] = {std::vector<int>(n), std::vector<int>(n)};
-  for (int i = 0; i < n; ++i) {
-    const std::array<int, 2> to = continuations(c, i, signed_normals);
-    next[0][i] = to[0], next[1][i] = to[1];
-  }
+  Continuations next(c, signed_normals);
   std::vector<bool> done(n);
   map->chain.assign(1, 0);
   for (int seed = 0; seed < n; ++seed) {
@@ -72,10 +84,10 @@ void chain_edgels(const Candidates& c, float high, int min_chain, bool signed_no
       };
     };
     done[seed] = true;
-    follow(c, next, seed, 0, append_to(&back));
+    follow(c, &next, seed, 0, append_to(&back));
     run.assign(back.rbegin(), back.rend());
     run.push_back(seed);
-    follow(c, next, seed, 1, append_to(&run));
+    follow(c, &next, seed, 1, append_to(&run));
     if (int(run.size()) < min_chain) continue;
     for (int i : run) map->edgels.push_back(c.edgels[i]);
     map->chain.push_back(int(map->edgels.size()));

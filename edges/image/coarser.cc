@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/types/median.h"
+#include "edges/image/edgel_map.h"
 #include "edges/image/edgel_parabola.h"
 #include "edges/image/pull_of_blur.h"
 
@@ -34,15 +35,15 @@ double bend_at(const EdgelMap& map, int chain, int at, double reach_px) {
   return 2 * x[2] / std::pow(1 + x[1] * x[1], 1.5);
 }
 
-// The edgels of a coarser scale as the finest would show them.
-void refine(double sigma_px, double finest_px, EdgelMap* map) {
-  const std::vector<Edgel> before = map->edgels;
-  std::vector<double> bend(before.size());
+// Some edgels of a coarser scale as the finest would show them.
+void refine(double sigma_px, double finest_px, const std::vector<char>& which, EdgelMap* map) {
+  std::vector<double> bend(map->edgels.size());
   for (int c = 0; c < map->num_chains(); ++c)
     for (int i = map->chain[c]; i < map->chain[c + 1]; ++i)
-      bend[i] = bend_at(*map, c, i, kReach * sigma_px);
+      if (which[i]) bend[i] = bend_at(*map, c, i, kReach * sigma_px);
   const double less = sigma_px * sigma_px - finest_px * finest_px;
-  for (size_t i = 0; i < before.size(); ++i) {
+  for (size_t i = 0; i < bend.size(); ++i) {
+    if (!which[i]) continue;
     Edgel& e = map->edgels[i];
     const double width = e.width;
     const double fine = std::sqrt(std::max(width * width - less, finest_px * finest_px));
@@ -65,7 +66,7 @@ float median_width(const EdgelMap& map, int begin, int end, const std::vector<ch
 // Which edgels of a coarser scale no finer one shows.
 std::vector<char> new_ones(const EdgelMap& coarse, double sigma_px, EdgelMap* map) {
   const double own = kOwn * sigma_px;
-  build_lookup(map, own + 1);
+  find_nearest(map, own + 1);
   std::vector<char> out(coarse.edgels.size());
   for (size_t i = 0; i < out.size(); ++i) {
     const Edgel& e = coarse.edgels[i];
@@ -79,7 +80,7 @@ std::vector<char> new_ones(const EdgelMap& coarse, double sigma_px, EdgelMap* ma
 
 void add_coarser(EdgelMap coarse, double sigma_px, double finest_px, int min_chain, EdgelMap* map) {
   std::vector<char> keep = new_ones(coarse, sigma_px, map);
-  refine(sigma_px, finest_px, &coarse);
+  refine(sigma_px, finest_px, keep, &coarse);
   if (map->num_chains() > 0) {
     const std::vector<char> all(map->edgels.size(), 1);
     const float widest = float(kWidest) * median_width(*map, 0, int(all.size()), all);

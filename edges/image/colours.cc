@@ -10,7 +10,6 @@ namespace {
 constexpr int kBins = 32;         // a channel
 constexpr double kMostNats = 3;   // that a pixel tells
 constexpr double kUnseen = 1e-6;  // share of a bin: a thirtieth of it, if all were alike
-constexpr double kFewestPixels = 64;
 
 int level_of(float value) { return std::clamp(int(value * kBins), 0, kBins - 1); }
 
@@ -61,7 +60,7 @@ Picture odds_by_colours(const Picture& picture, const Image<Side>& side) {
     if (side.data[i] == Side::kObject) object.add(bin.data[i]);
     if (side.data[i] == Side::kAround) around.add(bin.data[i]);
   }
-  if (std::min(object.total(), around.total()) < kFewestPixels) return {};
+  if (std::min(object.total(), around.total()) < kFewestColoured) return {};
   object.spread(), around.spread();
   Picture out;
   out.red = Image<float>(bin.width, bin.height);

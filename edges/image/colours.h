@@ -8,6 +8,11 @@
 
 namespace sketchsplat {
 
+/// Pixels of the object, or around it, of fewer than which colours tell nothing.
+inline constexpr int kFewestColoured = 64;
+/// How far around the object colours are looked at, in lengths of its longest side.
+inline constexpr double kAroundObject = 0.2;
+
 /// How often which colours were seen: counts over a grid of 32 bins a channel.
 class Colours {
  public:

@@ -11,13 +11,12 @@
 
 #include "datasets/types/parallel.h"
 #include "edges/image/colours.h"
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 namespace {
 
-constexpr double kSurroundings = 0.2;  // of the longest side of where the object may be
 constexpr int kLeastSurroundings = 8;  // [px]
-constexpr int kFewestPixels = 64;      // of either kind: colours of fewer tell nothing
 constexpr uint8_t kLikely = 2;
 constexpr double kSmooth = 10;  // [nat] that a cut between two pixels of one colour costs
 constexpr double kNever = 1e3;  // [nat]
@@ -44,20 +43,20 @@ Picture cut(const Picture& from, const cv::Rect& box) {
 Part part_of(const Picture& picture, const Image<uint8_t>& maybe) {
   Part part;
   if (maybe.empty()) return part;
-  const cv::Mat1b inside(maybe.height, maybe.width, const_cast<uint8_t*>(maybe.data.data()));
+  const cv::Mat1b inside = mat_of(maybe);
   const cv::Rect box = cv::boundingRect(inside);
   const int around =
-      std::max(kLeastSurroundings, int(kSurroundings * std::max(box.width, box.height)));
+      std::max(kLeastSurroundings, int(kAroundObject * std::max(box.width, box.height)));
   const cv::Rect wide =
       cv::Rect(box.x - around, box.y - around, box.width + 2 * around, box.height + 2 * around) &
       cv::Rect(0, 0, maybe.width, maybe.height);
   const int may = cv::countNonZero(inside);
-  if (may < kFewestPixels || wide.area() - may < kFewestPixels) return part;
+  if (may < kFewestColoured || wide.area() - may < kFewestColoured) return part;
   part.box = wide;
   part.picture = cut(picture, wide);
   part.bin = Colours::bins_of(part.picture);
   part.maybe = part.object = cut(maybe, wide.x, wide.y, wide.width, wide.height);
-  const int first = cv::countNonZero(inside == kLikely) < kFewestPixels ? 1 : kLikely;
+  const int first = cv::countNonZero(inside == kLikely) < kFewestColoured ? 1 : kLikely;
   for (uint8_t& here : part.object.data) here = here >= first;
   return part;
 }
@@ -156,8 +155,7 @@ std::vector<Image<uint8_t>> cut_out(const std::vector<const Picture*>& pictures,
     const Part& part = parts[k];
     if (part.box.empty()) continue;
     out[k] = Image<uint8_t>(maybe[k].width, maybe[k].height);
-    for (int y = 0; y < part.box.height; ++y)
-      std::copy_n(part.object.row(y), part.box.width, out[k].row(part.box.y + y) + part.box.x);
+    mat_of(part.object).copyTo(mat_of(out[k])(part.box));
   }
   return out;
 }

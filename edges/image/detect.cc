@@ -13,6 +13,7 @@
 #include "edges/image/chain.h"
 #include "edges/image/coarser.h"
 #include "edges/image/gradient.h"
+#include "edges/image/mats.h"
 #include "edges/image/meaningful.h"
 #include "edges/image/sharpen.h"
 
@@ -36,44 +37,32 @@ struct Composite {
   void put_mask_on() { value = alpha.empty() ? grey : cv::Mat1f(alpha.mul(grey + kPedestal)); }
 };
 
-cv::Rect opaque_box(const Image<float>& alpha) {
-  int x0 = alpha.width, x1 = -1, y0 = alpha.height, y1 = -1;
-  for (int y = 0; y < alpha.height; ++y) {
-    const float* row = alpha.row(y);
-    for (int x = 0; x < alpha.width; ++x)
-      if (row[x] > 0) {
-        x0 = std::min(x0, x), x1 = std::max(x1, x);
-        y0 = std::min(y0, y), y1 = std::max(y1, y);
-      }
-  }
-  return x1 < 0 ? cv::Rect() : cv::Rect(x0, y0, x1 - x0 + 1, y1 - y0 + 1);
-}
-
 Composite composite(const Picture& picture, const DetectOptions& options) {
   Composite c;
-  const int w = picture.width(), h = picture.height();
-  cv::Rect box(0, 0, w, h);
-  const bool masked = !picture.alpha.empty();
-  const int border = int(std::ceil(4 * options.sigma_px)) + 2;
-  if (masked) {
-    box = opaque_box(picture.alpha);
-    if (box.empty()) return c;
-    box = cv::Rect(box.x - border, box.y - border, box.width + 2 * border, box.height + 2 * border);
-    box &= cv::Rect(0, 0, w, h);  // an object that leaves the image does not end at its frame
+  cv::Rect box(0, 0, picture.width(), picture.height());
+  if (!picture.alpha.empty()) {
+    const cv::Mat1f alpha = mat_of(picture.alpha);
+    const int border = int(std::ceil(4 * options.sigma_px)) + 2;
+    const cv::Rect opaque = cv::boundingRect(alpha > 0);
+    if (opaque.empty()) return c;
+    // An object that leaves the image does not end at its frame.
+    box &= cv::Rect(opaque.x - border, opaque.y - border, opaque.width + 2 * border,
+                    opaque.height + 2 * border);
+    c.alpha = alpha(box).clone();
+    c.inside = c.alpha >= 1;
+  } else {
+    c.inside = cv::Mat1b(box.size(), 255);
   }
   c.x0 = box.x, c.y0 = box.y;
-  c.grey.create(box.height, box.width);
-  c.inside.create(box.height, box.width);
-  if (masked) c.alpha.create(box.height, box.width);
-  for (int v = 0; v < box.height; ++v)
-    for (int u = 0; u < box.width; ++u) {
-      const int x = u + box.x, y = v + box.y;
-      const float a = masked ? picture.alpha.at(x, y) : 1.f;
-      c.grey(v, u) = 0.299f * picture.red.at(x, y) + 0.587f * picture.green.at(x, y) +
-                     0.114f * picture.blue.at(x, y);
-      c.inside(v, u) = a >= 1.f ? 255 : 0;
-      if (masked) c.alpha(v, u) = a;
-    }
+  c.grey.create(box.size());
+  for (int v = 0; v < box.height; ++v) {
+    const float* red = picture.red.row(v + box.y) + box.x;
+    const float* green = picture.green.row(v + box.y) + box.x;
+    const float* blue = picture.blue.row(v + box.y) + box.x;
+    float* grey = c.grey[v];
+    for (int u = 0; u < box.width; ++u)
+      grey[u] = 0.299f * red[u] + 0.587f * green[u] + 0.114f * blue[u];
+  }
   c.put_mask_on();
   return c;
 }
@@ -83,9 +72,9 @@ std::shared_ptr<const GreyPart> grey_part(const Composite& c) {
   part.x0 = c.x0, part.y0 = c.y0;
   part.value = Image<uint16_t>(c.value.cols, c.value.rows);
   for (int y = 0; y < c.value.rows; ++y)
-    for (int x = 0; x < c.value.cols; ++x)
-      part.value.at(x, y) =
-          uint16_t(std::clamp(c.value(y, x) * GreyPart::kOne + 0.5f, 0.f, 65535.f));
+    std::transform(c.value[y], c.value[y] + c.value.cols, part.value.row(y), [](float v) {
+      return uint16_t(int(std::clamp(v * GreyPart::kOne + 0.5f, 0.f, 65535.f)));
+    });
   return std::make_shared<const GreyPart>(std::move(part));
 }
 
@@ -171,13 +160,15 @@ Candidates find_candidates(const Gradient& g, float low) {
   Candidates c;
   c.at = Image<int>(g.magnitude.cols, g.magnitude.rows, -1);
   c.edgels.reserve(g.magnitude.total() / kPixels);
-  for (int y = 1; y + 1 < g.magnitude.rows; ++y)
+  for (int y = 1; y + 1 < g.magnitude.rows; ++y) {
+    const float* magnitude = g.magnitude[y];
     for (int x = 1; x + 1 < g.magnitude.cols; ++x) {
       Edgel e;
-      if (g.magnitude(y, x) < low || !localise(g, x, y, &e)) continue;
+      if (magnitude[x] < low || !localise(g, x, y, &e)) continue;
       c.at.at(x, y) = int(c.edgels.size());
       c.edgels.push_back(e);
     }
+  }
   return c;
 }
 
@@ -300,80 +291,6 @@ EdgelMap detect_edges(const Picture& picture, const DetectOptions& options) {
   if (sharpen_blurred(map, &search, &c)) map = detect_in(c, picture, search);
   map.grey = grey_part(c);
   return map;
-}
-
-std::vector<int> append_runs(const EdgelMap& from, const std::vector<char>& keep, int min_chain,
-                             EdgelMap* to) {
-  std::vector<int> kept;
-  const bool judged = !from.meaning.empty() && int(to->meaning.size()) == to->num_chains();
-  if (to->chain.empty()) to->chain.push_back(int(to->edgels.size()));
-  to->nearest.clear();
-  to->window_width = to->window_height = 0;
-  for (int c = 0; c < from.num_chains(); ++c)
-    for (int begin = from.chain[c], end; begin < from.chain[c + 1]; begin = end + 1) {
-      for (end = begin; end < from.chain[c + 1] && keep[end];) ++end;
-      if (end == begin || end - begin < min_chain) continue;
-      for (int k = begin; k < end; ++k) kept.push_back(k), to->edgels.push_back(from.edgels[k]);
-      to->chain.push_back(int(to->edgels.size()));
-      if (judged)
-        to->meaning.push_back(from.meaning[c]);
-      else
-        to->meaning.clear();
-    }
-  return kept;
-}
-
-namespace {
-
-// Chessboard distance to the nearest pixel with an edgel, negative, where there is none.
-void fill_distances(EdgelMap* map) {
-  const cv::Mat1i nearest(map->window_height, map->window_width, map->nearest.data());
-  cv::Mat1f distance;
-  cv::distanceTransform(nearest < 0, distance, cv::DIST_C, cv::DIST_MASK_3);
-  const float* far = distance.ptr<float>();
-  for (int& here : map->nearest) {
-    if (here < 0) here = -int(*far);
-    ++far;
-  }
-}
-
-}  // namespace
-
-void build_lookup(EdgelMap* map, double reach_px) {
-  map->nearest.clear();
-  map->window_width = map->window_height = 0;
-  if (map->edgels.empty()) return;
-  float x_min = 1e9f, y_min = 1e9f, x_max = -1e9f, y_max = -1e9f;
-  for (const Edgel& e : map->edgels) {
-    x_min = std::min(x_min, e.x), x_max = std::max(x_max, e.x);
-    y_min = std::min(y_min, e.y), y_max = std::max(y_max, e.y);
-  }
-  const int r = int(std::ceil(reach_px));
-  map->x0 = int(std::floor(x_min)) - r, map->y0 = int(std::floor(y_min)) - r;
-  map->window_width = int(std::ceil(x_max)) + r + 1 - map->x0;
-  map->window_height = int(std::ceil(y_max)) + r + 1 - map->y0;
-  map->nearest.assign(size_t(map->window_width) * map->window_height, -1);
-  std::vector<float> best(map->nearest.size(), float(reach_px * reach_px));
-  const int side = 2 * r + 1;  // of the square about an edgel, which the window holds
-  std::vector<float> across(side);
-  for (int i = 0; i < int(map->edgels.size()); ++i) {
-    const Edgel& e = map->edgels[i];
-    const int left = int(std::lround(e.x)) - r, top = int(std::lround(e.y)) - r;
-    for (int k = 0; k < side; ++k) across[k] = (left + k - e.x) * (left + k - e.x);
-    for (int y = top; y < top + side; ++y) {
-      const float down = (y - e.y) * (y - e.y);
-      const size_t first = size_t(y - map->y0) * map->window_width + (left - map->x0);
-      float* least = best.data() + first;
-      int* nearest = map->nearest.data() + first;
-      for (int k = 0; k < side; ++k) {  // without branches: the compiler makes vectors of it
-        const float d = across[k] + down;
-        const bool nearer = d < least[k];
-        least[k] = nearer ? d : least[k];
-        nearest[k] = nearer ? i : nearest[k];
-      }
-    }
-  }
-  fill_distances(map);
 }
 
 Image<float> draw_edge_map(const EdgelMap& map, double sigma_px) {

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
+#include "datasets/types/median.h"
 #include "edges/image/chain.h"
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 namespace {
@@ -36,24 +39,15 @@ bool localise(const cv::Mat1f& m, const cv::Mat1f& log, int x, int y, Edgel* e) 
   return true;
 }
 
-float percentile(std::vector<float> values, double share) {
-  if (values.empty()) return 0;
-  const size_t k = std::min(values.size() - 1, size_t(share * values.size()));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[k];
-}
-
 }  // namespace
 
 EdgelMap detect_ridges(const Image<float>& map, const MapOptions& options) {
   EdgelMap out;
   out.width = map.width, out.height = map.height;
   if (map.width < 3 || map.height < 3) return out;
-  cv::Mat1f m(map.height, map.width);
-  const bool inverted = is_inverted(map);
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) m(y, x) = inverted ? 1 - map.at(x, y) : map.at(x, y);
-  cv::GaussianBlur(m, m, cv::Size(), options.sigma_px, options.sigma_px, cv::BORDER_REPLICATE);
+  const cv::Mat1f bright = is_inverted(map) ? cv::Mat1f(1 - mat_of(map)) : mat_of(map);
+  cv::Mat1f m;
+  cv::GaussianBlur(bright, m, cv::Size(), options.sigma_px, options.sigma_px, cv::BORDER_REPLICATE);
   cv::Mat1f log;
   cv::log(cv::max(m, 1e-4f), log);
   Candidates c;
@@ -67,7 +61,8 @@ EdgelMap detect_ridges(const Image<float>& map, const MapOptions& options) {
       c.edgels.push_back(e);
       strength.push_back(e.strength);
     }
-  const float top = percentile(strength, 0.99);
+  if (strength.empty()) return out;
+  const float top = quantile(std::move(strength), 0.99);
   const float low = float(options.low) * top;
   for (int& k : c.at.data)
     if (k >= 0 && c.edgels[k].strength < low) k = -1;

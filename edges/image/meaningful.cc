@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include "edges/image/hatching.h"
@@ -34,9 +36,15 @@ class Neighbourhood {
   Neighbourhood(const cv::Mat1f& magnitude, const cv::Mat1b& outline)
       : nx_(int(magnitude.cols / kCell) + 1), ny_(int(magnitude.rows / kCell) + 1) {
     std::vector<Histogram> cells(size_t(nx_) * ny_, Histogram{});
-    for (int y = 0; y < magnitude.rows; ++y)
+    std::vector<int> column(magnitude.cols);
+    for (int x = 0; x < magnitude.cols; ++x) column[x] = cell(x, 0);
+    for (int y = 0; y < magnitude.rows; ++y) {
+      Histogram* row = &cells[cell(0, y)];
+      const float* here = magnitude[y];
+      const uchar* leave = outline[y];
       for (int x = 0; x < magnitude.cols; ++x)
-        if (!outline(y, x)) ++cells[cell(x, y)][bin(magnitude(y, x))];
+        if (!leave[x]) ++row[column[x]][bin(here[x])];
+    }
     for (Histogram& c : cells)
       for (int b = kBins - 2; b >= 0; --b) c[b] += c[b + 1];
     around_.assign(cells.size(), Histogram{});
@@ -71,9 +79,27 @@ class Neighbourhood {
  private:
   using Histogram = std::array<int, kBins>;  // from a bin on
 
-  static int bin(float strength) {
+  static int exact_bin(float strength) {
     const double log = std::log(std::max(strength, 1e-6f));
     return std::clamp(int((log - kFirstBin) * kBinsPerE), 0, kBins - 1);
+  }
+  // Most floats that begin with the same 16 bits are in one bin. Not negative.
+  static int bin(float strength) {
+    constexpr uint32_t kTail = 0xffff;
+    static const std::vector<int8_t> common = [] {
+      std::vector<int8_t> bins(1 << 15);
+      for (uint32_t head = 0; head < bins.size(); ++head) {
+        const uint32_t ends[2] = {head << 16, head << 16 | kTail};
+        float from, to;
+        std::memcpy(&from, &ends[0], sizeof from), std::memcpy(&to, &ends[1], sizeof to);
+        bins[head] = int8_t(exact_bin(from) == exact_bin(to) ? exact_bin(from) : -1);
+      }
+      return bins;
+    }();
+    uint32_t bits;
+    std::memcpy(&bits, &strength, sizeof bits);
+    const int found = common[bits >> 16];
+    return found >= 0 ? found : exact_bin(strength);
   }
   template <typename Visit>
   void each_around(int cell, const Visit& visit) const {

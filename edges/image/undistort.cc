@@ -5,6 +5,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "edges/image/edgel_map.h"
+#include "edges/image/mats.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -32,9 +35,8 @@ void move(const Eigen::Vector2d& to, const Eigen::Matrix2d& pull_back, Edgel* e)
 void resample(const cv::Mat2f& from, Image<float>* channel) {
   if (channel->empty()) return;
   Image<float> out(channel->width, channel->height);
-  const cv::Mat1f in(channel->height, channel->width, channel->data.data());
-  cv::Mat1f view(out.height, out.width, out.data.data());
-  cv::remap(in, view, from, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, 0);
+  cv::remap(mat_of(*channel), mat_of(out), from, cv::noArray(), cv::INTER_LINEAR,
+            cv::BORDER_CONSTANT, 0);
   *channel = std::move(out);
 }
 
@@ -50,13 +52,8 @@ EdgelMap undistort_edgels(EdgelMap found, const View& view, int min_chain) {
     keep[i] = view.ideal_pixel({e.x, e.y}, &ideal, &J) && least_stretch(J) * kMostStretch > 1;
     if (keep[i]) move(ideal, J, &e);
   }
-  EdgelMap out;
-  out.width = found.width, out.height = found.height;
-  out.noise = found.noise;
-  out.blur = found.blur;
-  append_runs(found, keep, min_chain, &out);
+  EdgelMap out = runs_of(found, keep, min_chain);
   out.mask = std::move(found.mask);
-  out.grey = std::move(found.grey);
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "edges/image/edgel_map.h"
 #include "edges/tags/tag_edges.h"
 #include "sketches/solve/similarity.h"
 
@@ -36,7 +37,6 @@ constexpr double kShiftPx = 0.5;     // standard deviation of what a view makes 
 constexpr double kPixelFloor = 0.003;  // [px] by which no number of views measures a side better
 constexpr double kBorder = 0.125;      // of the side: the white one
 constexpr double kClearPx = 3;         // around what is left out
-constexpr int kMinChain = 3;
 
 const Vector2d kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
 
@@ -323,12 +323,8 @@ EdgelMap without_tags(const EdgelMap& map, const View& view, const std::vector<T
     }
   }
   if (!any) return map;
-  EdgelMap out;
-  out.width = map.width, out.height = map.height;
-  out.noise = map.noise;
+  EdgelMap out = runs_of(map, keep, kShortestRun);
   out.mask = map.mask;
-  out.grey = map.grey;
-  append_runs(map, keep, kMinChain, &out);
   return out;
 }
 

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "edges/views/cell_groups.h"
 
-#include <array>
-#include <cmath>
 #include <map>
 
 namespace sketchsplat {
 
 std::vector<int> groups_of(const std::vector<Eigen::Vector3d>& places, double cell, int* count) {
-  using Cell = std::array<int, 3>;
-  const auto cell_of = [cell](const Eigen::Vector3d& p) {
-    return Cell{int(std::floor(p.x() / cell)), int(std::floor(p.y() / cell)),
-                int(std::floor(p.z() / cell))};
-  };
   std::map<Cell, int> group;
-  for (const Eigen::Vector3d& p : places) group[cell_of(p)] = -1;
+  for (const Eigen::Vector3d& p : places) group[cell_of(p, cell)] = -1;
   *count = 0;
   for (auto& [start, g] : group) {
     if (g >= 0) continue;
@@ -24,7 +17,7 @@ std::vector<int> groups_of(const std::vector<Eigen::Vector3d>& places, double ce
       const Cell c = open.back();
       open.pop_back();
       for (int k = 0; k < 27; ++k) {
-        const auto next = group.find({c[0] + k / 9 - 1, c[1] + k / 3 % 3 - 1, c[2] + k % 3 - 1});
+        const auto next = group.find(touching(c, k));
         if (next == group.end() || next->second >= 0) continue;
         next->second = group[start];
         open.push_back(next->first);
@@ -32,7 +25,7 @@ std::vector<int> groups_of(const std::vector<Eigen::Vector3d>& places, double ce
     }
   }
   std::vector<int> out;
-  for (const Eigen::Vector3d& p : places) out.push_back(group[cell_of(p)]);
+  for (const Eigen::Vector3d& p : places) out.push_back(group[cell_of(p, cell)]);
   return out;
 }
 

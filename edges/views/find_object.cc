@@ -2,11 +2,10 @@
 #include "edges/views/find_object.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <random>
 
+#include "datasets/neighbours/kd_tree.h"
 #include "datasets/types/dense.h"
 #include "datasets/types/median.h"
 #include "edges/views/cell_groups.h"
@@ -155,29 +154,19 @@ std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vect
 std::vector<Vector3d> borne_out(const std::vector<EdgePoint>& points, double footprint,
                                 const RegionOptions& options) {
   const double reach = options.line_px * footprint, aside = options.table_px * footprint;
-  using Cell = std::array<int, 3>;
-  const auto cell_of = [reach](const Vector3d& x) {
-    return Cell{int(std::floor(x.x() / reach)), int(std::floor(x.y() / reach)),
-                int(std::floor(x.z() / reach))};
-  };
-  std::map<Cell, std::vector<int>> in_cell;
-  for (size_t i = 0; i < points.size(); ++i) in_cell[cell_of(points[i].position)].push_back(int(i));
+  Eigen::Matrix3Xd positions(3, points.size());
+  for (size_t i = 0; i < points.size(); ++i) positions.col(i) = points[i].position;
+  const KdTree tree(positions);
   const auto bears_out = [&](const EdgePoint& p, const EdgePoint& q) {
     const Vector3d d = q.position - p.position;
-    return d.norm() < reach && d.cross(p.tangent).norm() < aside &&
-           std::abs(p.tangent.dot(q.tangent)) > kSameDirection;
+    return d.cross(p.tangent).norm() < aside && std::abs(p.tangent.dot(q.tangent)) > kSameDirection;
   };
   std::vector<Vector3d> out;
   for (const EdgePoint& p : points) {
-    const Cell c = cell_of(p.position);
     int others = -1;  // it meets itself
     double views = 0;
-    for (int k = 0; k < 27; ++k) {
-      const auto near = in_cell.find({c[0] + k / 9 - 1, c[1] + k / 3 % 3 - 1, c[2] + k % 3 - 1});
-      if (near == in_cell.end()) continue;
-      for (const int j : near->second)
-        if (bears_out(p, points[j])) ++others, views += points[j].views - options.min_views;
-    }
+    for (const int j : tree.within(p.position, reach))
+      if (bears_out(p, points[j])) ++others, views += points[j].views - options.min_views;
     if (others > 0 && views >= options.line_views) out.push_back(p.position);
   }
   return out;

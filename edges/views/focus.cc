@@ -6,11 +6,10 @@
 #include <numeric>
 
 #include "datasets/types/parallel.h"
+#include "edges/image/edgel_map.h"
 
 namespace sketchsplat {
 namespace {
-
-constexpr int kMinChain = 3;  // edgels of a chain that leaves the region
 
 // Does every corner of the region's box lie in front of the camera? Then a pixel is inside if a
 // point of the box is seen there: the pixel box of its corners, for simplicity.
@@ -25,13 +24,8 @@ bool pixel_box(const View& view, const Eigen::AlignedBox3d& box, Eigen::AlignedB
 }
 
 EdgelMap kept(const EdgelMap& map, const std::vector<char>& keep) {
-  EdgelMap out;
-  out.width = map.width, out.height = map.height;
-  out.noise = map.noise;
-  out.blur = map.blur;
+  EdgelMap out = runs_of(map, keep, kShortestRun);
   out.mask = map.mask;
-  out.grey = map.grey;
-  append_runs(map, keep, kMinChain, &out);
   return out;
 }
 

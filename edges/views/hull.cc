@@ -7,8 +7,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/types/parallel.h"
+#include "edges/image/mats.h"
 #include "edges/views/lift.h"
-#include "edges/views/mask_distance.h"
 
 namespace sketchsplat {
 

@@ -6,12 +6,11 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "edges/views/mask_distance.h"
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 namespace {
 
-constexpr double kSurroundings = 0.2;   // of the longest side of the silhouette
 constexpr double kOwnPx = 2;            // about an edgel, where odds show the same edge
 constexpr double kSmoothPx = 1.5;       // over how much of the odds what lies around is told
 constexpr double kAround = 0.3;         // in odds, below which it is: -1.2 nat
@@ -37,7 +36,7 @@ Image<Side> sides_of(const Image<uint8_t>& mask, double slack_px) {
   const cv::Mat1b inside = mat_of(mask);
   const cv::Mat1f depth = distance_to_zero(inside), away = distance_to_zero(inside == 0);
   const cv::Rect box = cv::boundingRect(inside);
-  const double around = kSurroundings * std::max(box.width, box.height);
+  const double around = kAroundObject * std::max(box.width, box.height);
   Image<Side> out(mask.width, mask.height, Side::kUnknown);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
@@ -48,10 +47,9 @@ Image<Side> sides_of(const Image<uint8_t>& mask, double slack_px) {
 }
 
 void trim_silhouette(const Picture& odds, Image<uint8_t>* mask, double* slack_px) {
-  cv::Mat1b inside(mask->height, mask->width, mask->data.data());
-  cv::Mat1f smooth(mask->height, mask->width);
-  std::copy(odds.red.data.begin(), odds.red.data.end(), smooth.begin());
-  cv::GaussianBlur(smooth, smooth, cv::Size(), kSmoothPx, kSmoothPx);
+  cv::Mat1b inside = mat_of(*mask);
+  cv::Mat1f smooth;
+  cv::GaussianBlur(mat_of(odds.red), smooth, cv::Size(), kSmoothPx, kSmoothPx);
   const cv::Mat1f depth = distance_to_zero(inside);
   const cv::Mat1b outside = inside == 0, end = ~outside & (depth <= *slack_px + 1);
   const cv::Mat1b trimmed = connected_to(outside, outside | (end & (smooth < kAround)));

@@ -8,7 +8,7 @@
 #include "datasets/types/errors.h"
 #include "datasets/types/parallel.h"
 #include "edges/image/cut_out.h"
-#include "edges/views/mask_distance.h"
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 
@@ -67,12 +67,6 @@ std::vector<Vector3d> known_of(const ObjectRegion& region) {
   std::vector<Vector3d> out = region.edges;
   if (region.table)
     for (const Vector3d& p : region.edges) out.push_back(region.table->projection(p));
-  return out;
-}
-
-Image<uint8_t> image_of(const cv::Mat1b& mask) {
-  Image<uint8_t> out(mask.cols, mask.rows);
-  for (int y = 0; y < out.height; ++y) std::copy_n(mask[y], out.width, out.row(y));
   return out;
 }
 

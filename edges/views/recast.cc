@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "datasets/types/parallel.h"
+#include "edges/image/edgel_map.h"
 #include "edges/image/undistort.h"
 
 namespace sketchsplat {
 namespace {
-
-constexpr int kShortest = 3;  // edgels that still have a direction
 
 // Whether edgels lie where they lay.
 bool same_image(const View& a, const View& b) {
@@ -30,7 +29,7 @@ EdgelMap coarser(const EdgelMap& map, int factor) {
   out.noise = map.noise;
   out.chain.push_back(0);
   for (int c = 0; c < map.num_chains(); ++c) {
-    if (map.chain[c + 1] - map.chain[c] < kShortest * factor) continue;
+    if (map.chain[c + 1] - map.chain[c] < kShortestRun * factor) continue;
     for (int i = map.chain[c] + factor / 2; i < map.chain[c + 1]; i += factor) {
       Edgel e = map.edgels[i];
       e.x = (e.x + 0.5f) / float(factor) - 0.5f, e.y = (e.y + 0.5f) / float(factor) - 0.5f;

@@ -2,16 +2,16 @@
 #include "edges/views/silhouettes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
+#include "edges/image/edgel_map.h"
+#include "edges/image/mats.h"
 #include "edges/views/cell_groups.h"
 #include "edges/views/find_object.h"
-#include "edges/views/mask_distance.h"
 #include "edges/views/picture_cut.h"
 
 namespace sketchsplat {
@@ -28,7 +28,6 @@ constexpr int kAgainPx = 3;     // [px] around what most views hold, where it ma
 constexpr double kPart = 0.25;  // of the object, less than which is no part that touches it nowhere
 constexpr int kFewestViews = 3;
 constexpr int kFewestWhole = 1;  // views that show all of the object
-constexpr int kMinChain = 3;     // edgels of a chain that leaves the silhouette
 
 // Places that nearly all views which see them hold, on a grid.
 struct Held {
@@ -68,19 +67,11 @@ Held held_by_most(const std::vector<View>& views, const std::vector<PictureCut>&
 // Which points lie in a held cell or beside one.
 std::vector<char> are_held(const std::vector<Vector3d>& points, const Held& held,
                            const Vector3d& low) {
-  using Cell = std::array<int, 3>;
-  const auto cell_of = [&](const Vector3d& p) {
-    const Eigen::Array3d c = ((p - low) / held.cell).array().floor();
-    return Cell{int(c.x()), int(c.y()), int(c.z())};
-  };
   std::set<Cell> cells;
-  for (const Vector3d& p : held.places) {
-    const Cell c = cell_of(p);
-    for (int k = 0; k < 27; ++k)
-      cells.insert({c[0] + k / 9 - 1, c[1] + k / 3 % 3 - 1, c[2] + k % 3 - 1});
-  }
+  for (const Vector3d& p : held.places)
+    for (int k = 0; k < 27; ++k) cells.insert(touching(cell_of(p - low, held.cell), k));
   std::vector<char> out;
-  for (const Vector3d& p : points) out.push_back(cells.count(cell_of(p)) > 0);
+  for (const Vector3d& p : points) out.push_back(cells.count(cell_of(p - low, held.cell)) > 0);
   return out;
 }
 
@@ -291,11 +282,7 @@ EdgelMap on_silhouette(const EdgelMap& map, const View& view, const Image<uint8_
     keep[i] = mask.at(x, y);
     e.outline = depth(y, x) <= slack_px;
   }
-  EdgelMap out;
-  out.width = map.width, out.height = map.height;
-  out.noise = map.noise, out.blur = map.blur;
-  out.grey = map.grey;
-  append_runs(from, keep, kMinChain, &out);
+  EdgelMap out = runs_of(from, keep, kShortestRun);
   build_lookup(&out);
   return out;
 }

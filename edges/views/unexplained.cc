@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "datasets/types/parallel.h"
+#include "edges/image/edgel_map.h"
 
 namespace sketchsplat {
 namespace {
@@ -60,13 +61,10 @@ EdgeWorld unexplained(const EdgeWorld& world, const EdgelFlags& explained, int m
   out.maps.resize(n);
   out.plane_normal.resize(n);
   parallel_for(n, 1, [&](int v) {
-    const EdgelMap& map = world.maps[v];
     std::vector<char> keep = explained[v];
     for (char& k : keep) k = !k;
-    out.maps[v].width = map.width, out.maps[v].height = map.height;
-    out.maps[v].noise = map.noise;
-    out.maps[v].blur = map.blur;
-    const std::vector<int> kept = append_runs(map, keep, min_chain, &out.maps[v]);
+    std::vector<int> kept;
+    out.maps[v] = runs_of(world.maps[v], keep, min_chain, &kept);
     build_lookup(&out.maps[v]);
     out.plane_normal[v].resize(3, kept.size());
     for (size_t k = 0; k < kept.size(); ++k)

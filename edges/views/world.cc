@@ -52,6 +52,7 @@ Eigen::AlignedBox3d carve(const std::vector<View>& views, const std::vector<Pixe
       for (int k = 0; k < kGrid; ++k) {
         const Eigen::Vector3d p =
             cube.min() + cell.cwiseProduct(Eigen::Vector3d(i + .5, j + .5, k + .5));
+        if (out.contains(p - cell) && out.contains(p + cell)) continue;  // it would add nothing
         int misses = 0;
         for (size_t v = 0; v < views.size() && misses <= most * voters; ++v) {
           const PixelBox& b = boxes[v];
