@@ -14,42 +14,55 @@ namespace sketchsplat {
 
 namespace {
 
-// Number of mask pixels above and left of each pixel: says at once whether a box touches the mask.
-Image<int> integral(const Image<uint8_t>& mask) {
-  Image<int> sum(mask.width + 1, mask.height + 1);
-  for (int y = 0; y < mask.height; ++y) {
-    int row = 0;
-    for (int x = 0; x < mask.width; ++x) {
-      row += mask.at(x, y);
-      sum.at(x + 1, y + 1) = sum.at(x + 1, y) + row;
-    }
+// A mask, so that it can be said at once how much of a box it holds.
+class CountedMask {
+ public:
+  CountedMask() = default;
+  explicit CountedMask(const Image<uint8_t>& mask)
+      : width_(mask.width), height_(mask.height), box_(cv::boundingRect(mat_of(mask))) {
+    if (!box_.empty()) cv::integral(mat_of(mask)(box_), sum_, CV_32S);
   }
-  return sum;
-}
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const cv::Rect& box() const { return box_; }
+  /// Pixels of it in a part of the image.
+  int held(const cv::Rect& part) const {
+    const cv::Rect r = (part & box_) - box_.tl();
+    if (r.empty()) return 0;
+    const int *top = sum_[r.y], *bottom = sum_[r.y + r.height];
+    return bottom[r.x + r.width] - top[r.x + r.width] - bottom[r.x] + top[r.x];
+  }
+
+ private:
+  int width_ = 0, height_ = 0;
+  cv::Rect box_;
+  cv::Mat1i sum_;  // of what lies above and left of each pixel of the box
+};
 
 // How much of a box of half size r around (x, y) the mask holds. What leaves the image is not
 // judged.
 enum Share : uint8_t { kNone, kSome, kAll };
-Share share(const Image<int>& sum, double x, double y, double r) {
-  const int w = sum.width - 1, h = sum.height - 1;
+Share share(const CountedMask& mask, double x, double y, double r) {
+  const int w = mask.width(), h = mask.height();
   if (!(x >= 0 && y >= 0 && x <= w - 1 && y <= h - 1)) return kSome;
   r = std::min(r, double(w + h));  // a box around the camera itself has no bounds
   const int x0 = std::max(0, int(x - r)), x1 = std::min(w, int(x + r) + 2);
   const int y0 = std::max(0, int(y - r)), y1 = std::min(h, int(y + r) + 2);
-  const int held = sum.at(x1, y1) - sum.at(x0, y1) - sum.at(x1, y0) + sum.at(x0, y0);
-  return held == 0 ? kNone : held == (x1 - x0) * (y1 - y0) ? kAll : kSome;
+  const cv::Rect part(x0, y0, x1 - x0, y1 - y0);
+  const int held = mask.held(part);
+  return held == 0 ? kNone : held == part.area() ? kAll : kSome;
 }
 
 // The same around an ideal pixel; masks are in the pixels of the image.
-Share share(const Image<int>& sum, const View& view, const Eigen::Vector2d& ideal, double r) {
-  if (view.lens.is_identity()) return share(sum, ideal.x(), ideal.y(), r);
+Share share(const CountedMask& mask, const View& view, const Eigen::Vector2d& ideal, double r) {
+  if (view.lens.is_identity()) return share(mask, ideal.x(), ideal.y(), r);
   Eigen::Vector2d image;
   Eigen::Matrix2d J;
   if (!view.image_pixel(ideal, &image, &J)) return kSome;
   // At least what a length can grow by, and hardly more: the spectral norm is no larger.
   const double growth =
       std::sqrt(J.cwiseAbs().rowwise().sum().maxCoeff() * J.cwiseAbs().colwise().sum().maxCoeff());
-  return share(sum, image.x(), image.y(), r * growth);
+  return share(mask, image.x(), image.y(), r * growth);
 }
 
 constexpr double kSurroundings = 2.5;  // cells
@@ -58,19 +71,18 @@ constexpr double kCovered = 0.99;      // of what masks hold, by a hull that agr
 constexpr int kRays = 16;              // of a view, across the picture and down, that ask for it
 constexpr int kWithin = 2;             // [px] of the mask all around such a ray
 
-// A mask, as sums over what lies above and left of each pixel.
 struct Masked {
   const View* view;
-  Image<int> sum;
+  CountedMask mask;
   bool spanned;  // edges reach as far as the mask: the grid holds all that it shows
 };
 
-bool spans(const std::vector<Edgel>& edgels, const Image<uint8_t>& mask) {
+bool spans(const std::vector<Edgel>& edgels, const CountedMask& mask) {
   constexpr double kReach = 0.9;  // of the mask's width and height
   Eigen::AlignedBox2f box;
   for (const Edgel& e : edgels) box.extend(Eigen::Vector2f(e.x, e.y));
-  const cv::Rect all = cv::boundingRect(mat_of(mask));
-  return box.sizes().x() >= kReach * all.width && box.sizes().y() >= kReach * all.height;
+  return box.sizes().x() >= kReach * mask.box().width &&
+         box.sizes().y() >= kReach * mask.box().height;
 }
 
 std::vector<Masked> masked_views(const EdgeWorld& world) {
@@ -86,8 +98,8 @@ std::vector<Masked> masked_views(const EdgeWorld& world) {
     out.push_back({&world.views[v], {}, false});
   }
   parallel_for(int(out.size()), 1, [&](int m) {
-    out[m].sum = integral(*masks[m]);
-    out[m].spanned = spans(*edgels[m], *masks[m]);
+    out[m].mask = CountedMask(*masks[m]);
+    out[m].spanned = spans(*edgels[m], out[m].mask);
   });
   return out;
 }
@@ -107,7 +119,7 @@ CellState state_of(const std::vector<Masked>& masks, const Eigen::Vector3d& p, d
     double z;
     const Eigen::Vector2d q = v.project(p, &z);
     if (!(z > 0)) continue;
-    const Share here = share(masks[m].sum, v, q, radius * v.camera.fx / z);
+    const Share here = share(masks[m].mask, v, q, radius * v.camera.fx / z);
     if (here == kNone && ++out.denials > most) return out;
     if (here == kAll) continue;
     out.whole = false;
@@ -190,12 +202,12 @@ int Carver::least_denials(const Masked& mask, const Eigen::Vector2d& ideal, int 
 bool Carver::agree(int most, int* enough) const {
   std::vector<std::vector<int>> count(masks_.size(), std::vector<int>(most + 2));
   parallel_for(int(masks_.size()), 1, [&](int m) {
-    const Image<int>& sum = masks_[m].sum;
+    const CountedMask& mask = masks_[m].mask;
     for (int k = 0; masks_[m].spanned && k < kRays * kRays; ++k) {
-      const Eigen::Vector2d pixel((k % kRays + 0.5) * (sum.width - 1) / kRays,
-                                  (k / kRays + 0.5) * (sum.height - 1) / kRays);
+      const Eigen::Vector2d pixel((k % kRays + 0.5) * mask.width() / kRays,
+                                  (k / kRays + 0.5) * mask.height() / kRays);
       Eigen::Vector2d ideal;
-      if (share(sum, pixel.x(), pixel.y(), kWithin) == kAll &&
+      if (share(mask, pixel.x(), pixel.y(), kWithin) == kAll &&
           masks_[m].view->ideal_pixel(pixel, &ideal))
         ++count[m][least_denials(masks_[m], ideal, most)];
     }
