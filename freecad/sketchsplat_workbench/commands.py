@@ -89,7 +89,7 @@ class MakeSketches:
         results = [r for r in map(result_of, selection or document.Objects) if r is not None]
         if len({r.Name for r in results}) != 1:
             return None, []
-        strokes = [o.Stroke for o in selection if hasattr(o, "Stroke") and not o.Proposed]
+        strokes = [o.Stroke for o in selection if hasattr(o, "Stroke")]
         return results[0], strokes
 
 

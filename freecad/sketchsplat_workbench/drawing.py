@@ -37,9 +37,7 @@ def draw_result(document, path, mm_per_world=None):
     result.addProperty("App::PropertyFloat", "MillimetresPerUnit", GROUP, "Scale of the file")
     result.Source = path
     result.MillimetresPerUnit = sketch.mm_per_world
-    _draw_strokes(document, result, sketch, False)
-    if sketch.proposed is not None:
-        _draw_strokes(document, result, sketch.proposed, True)
+    _draw_strokes(document, result, sketch)
     solid = sketch_file.solid_path(path)
     if solid is not None:
         _draw_solid(document, result, solid, sketch.mm_per_world / sketch_file.stated_scale(path))
@@ -71,13 +69,13 @@ def subgroup(document, result, label):
     return group
 
 
-def _draw_strokes(document, result, sketch, proposed):
+def _draw_strokes(document, result, sketch):
     members = {}
     for i, stroke in enumerate(sketch.strokes):
         name, colour = INFERRED if stroke.inferred else KINDS[stroke.kind]
         obj = document.addObject("Part::Feature", f"{stroke.kind}_{i}")
         obj.Shape = edge(sketch, i)
-        _add_evidence(obj, stroke, i, proposed)
+        _add_evidence(obj, stroke, i)
         if FreeCAD.GuiUp:
             obj.ViewObject.LineColor = colour
             obj.ViewObject.PointColor = colour
@@ -89,12 +87,11 @@ def _draw_strokes(document, result, sketch, proposed):
         subgroup(document, result, name).addObjects(objects)
 
 
-def _add_evidence(obj, stroke, index, proposed):
+def _add_evidence(obj, stroke, index):
     """What the images say about a stroke, as read-only properties."""
     rows = [
         ("App::PropertyString", "Kind", stroke.kind, "Kind of curve"),
         ("App::PropertyInteger", "Stroke", index, "Its number in sketch.json"),
-        ("App::PropertyBool", "Proposed", proposed, "One of the proposed strokes of sketch.json"),
         ("App::PropertyInteger", "SupportViews", stroke.support_views, "Views that see it"),
         ("App::PropertyLength", "Sigma", stroke.sigma, "Standard deviation of its position"),
         ("App::PropertyFloat", "RmsPixels", stroke.rms_px, "Distance to the edges in the images"),

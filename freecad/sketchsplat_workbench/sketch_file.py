@@ -42,13 +42,12 @@ class Stroke:
 
 @dataclass
 class Sketch:
-    """All lengths in millimetres. `proposed`: strokes that no view shows, with nodes of its own."""
+    """All lengths in millimetres."""
 
     nodes: np.ndarray  # n x 3
     strokes: list
     regularities: list = field(default_factory=list)  # of (kind, frozenset of strokes)
     mm_per_world: float = 1.0
-    proposed: "Sketch" = None
 
     def controls(self, index):
         """Control points (m x 3) of a stroke: begin, handles, end; handles alone if closed."""
@@ -139,10 +138,6 @@ def _sketch_of(path, content, scale):
     ]
     sketch = Sketch(nodes, strokes, mm_per_world=scale)
     sketch.regularities = _regularities(content.get("regularities"), len(strokes))
-    if isinstance(content.get("proposed"), dict):
-        sketch.proposed = _sketch_of(path + ": proposed", content["proposed"], scale)
-        for s in sketch.proposed.strokes:
-            s.inferred = True
     return sketch
 
 

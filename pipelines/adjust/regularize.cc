@@ -34,7 +34,6 @@ Regularized regularize(const Sketch& sketch, const StrokeObservation& seen, doub
     out.nats_saved = saved;
     out.sketch = bound.sketch;
     out.kept = finder.regularities();
-    out.imposed = relations;
     return out;
   }
   return out;

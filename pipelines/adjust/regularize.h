@@ -25,7 +25,6 @@ struct RegularizeOptions {
 struct Regularized {
   Sketch sketch;
   std::vector<Regularity> kept;
-  Relations imposed;
   double nats_saved = 0;  ///< by which the description became shorter
 };
 

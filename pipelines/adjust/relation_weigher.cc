@@ -102,24 +102,6 @@ RelationWeigher::Own RelationWeigher::ask(Relation relation, const SharedQuantit
   return answer;
 }
 
-RelationWeigher::Joint RelationWeigher::joint(const std::vector<Relation>& relations) const {
-  const int n = int(relations.size());
-  Joint out;
-  out.residual.resize(n);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < n; ++i) {
-    const RelationRows one = linearize(s_, relations_, relations[i]);
-    out.residual[i] = one.residual[0];
-    const Gaussian::Rows row = sparse(one, false);
-    for (Gaussian::Rows::InnerIterator it(row, 0); it; ++it)
-      entries.emplace_back(i, int(it.col()), it.value());
-  }
-  Gaussian::Rows rows(n, gaussian_.size());
-  rows.setFromTriplets(entries.begin(), entries.end());
-  out.covariance = gaussian_.covariance(rows);
-  return out;
-}
-
 RelationTrial RelationWeigher::weigh(std::vector<Relation>* relations, double range_px,
                                      double naming) {
   RelationTrial trial;

@@ -56,14 +56,6 @@ class RelationWeigher {
   };
   Own ask(Relation relation, const SharedQuantity& quantity);
 
-  /// Residuals of several relations of one residual each, and their covariance together. Nothing
-  /// may be exhausted().
-  struct Joint {
-    Eigen::VectorXd residual;
-    Eigen::MatrixXd covariance;
-  };
-  Joint joint(const std::vector<Relation>& relations) const;
-
   /// Sets the relations' sigmas, and asks what they cost and save. `naming`: log of the number of
   /// candidates among which they were found, less the log of the odds of what is expected. What a
   /// relation tells, log(range / deviation), must exceed the price of a parameter, lest chance

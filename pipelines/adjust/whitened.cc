@@ -14,22 +14,19 @@ using Eigen::Vector3d;
 // a view may be wrong about the whole of a stroke: many places are no better than one then, so that
 // of each is multiplied by their number. 1.4826 median is the standard deviation of normal numbers;
 // the stroke itself follows the views by about two of them.
-double unknown_of(const StrokeStats& s, double floor_px, double common_px) {
+double unknown_of(const StrokeStats& s, double floor_px) {
   const double aside = 1.4826 * s.bias_px;
-  return floor_px * floor_px +
-         s.samples * (aside * aside / std::max(1, s.views - 2) + common_px * common_px);
+  return floor_px * floor_px + s.samples * (aside * aside / std::max(1, s.views - 2));
 }
 
 }  // namespace
 
-SampleQuadratics whitened(const StrokeObservation& seen, double floor_px, double footprint,
-                          const std::vector<double>& common_px) {
+SampleQuadratics whitened(const StrokeObservation& seen, double floor_px, double footprint) {
   const Matches& q = seen.matches;
   SampleQuadratics out{q.information, q.slope};
   for (size_t i = 0; i < q.information.size(); ++i) {
     const StrokeStats& stroke = seen.strokes[seen.layout.stroke[i]];
-    const double common = common_px.empty() ? 0 : common_px[seen.layout.stroke[i]];
-    const double unknown = unknown_of(stroke, floor_px, common) * footprint * footprint;
+    const double unknown = unknown_of(stroke, floor_px) * footprint * footprint;
     const double scatter_px = std::max(q.sigma_px, stroke.rms_px);
     const auto es = eigen_symmetric(q.information[i]);
     const Vector3d values = es.values;

@@ -10,9 +10,7 @@ namespace sketchsplat {
 
 /// The quadratics of what was seen in squared standard deviations of the edgels, and of what they
 /// leave unknown: `floor_px` of every place, and what single views get wrong of a whole stroke.
-/// `common_px`: of each stroke, what all views get wrong of it together; may be empty: nothing.
-SampleQuadratics whitened(const StrokeObservation& seen, double floor_px, double footprint,
-                          const std::vector<double>& common_px = {});
+SampleQuadratics whitened(const StrokeObservation& seen, double floor_px, double footprint);
 
 /// The same quadratics, at samples of the sketch that were moved there. `cost` becomes what the way
 /// cost.

@@ -31,9 +31,8 @@ SharpEdges edges_of(const SolidSearch& found, const Sketch& sketch, const EdgeWo
 }
 
 // Relations between strokes, of which some went into others and some are gone.
-template <typename T>
-std::vector<T> moved(std::vector<T> kept, size_t least, const std::vector<int>& now) {
-  for (T& r : kept) {
+std::vector<Regularity> moved(std::vector<Regularity> kept, const std::vector<int>& now) {
+  for (Regularity& r : kept) {
     std::vector<int> strokes;
     for (const int s : r.strokes)
       if (now[s] >= 0 && std::find(strokes.begin(), strokes.end(), now[s]) == strokes.end())
@@ -41,7 +40,7 @@ std::vector<T> moved(std::vector<T> kept, size_t least, const std::vector<int>& 
     r.strokes = std::move(strokes);
   }
   kept.erase(std::remove_if(kept.begin(), kept.end(),
-                            [&](const T& r) { return r.strokes.size() < least; }),
+                            [](const Regularity& r) { return r.strokes.size() < 2; }),
              kept.end());
   return kept;
 }
@@ -78,11 +77,8 @@ FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, cons
   Stage stage("complete", 0, report, progress);
   const SharpEdges edges = joined(edges_of(*found, finished.sketch, world, options), world);
   if (edges.sketch.size() == 0) return finished;
-  // Lengths that were set are worth more than joints that are smooth.
-  const bool again = edges.bent && finished.snap.snaps.empty();
-  finished.sketch = again ? polished(edges.sketch, world, options) : edges.sketch;
-  finished.kept = moved(std::move(finished.kept), 2, edges.now);
-  finished.snap.snaps = moved(std::move(finished.snap.snaps), 1, edges.now);
+  finished.sketch = edges.bent ? polished(edges.sketch, world, options) : edges.sketch;
+  finished.kept = moved(std::move(finished.kept), edges.now);
   rename_doubtful(edges.now, found);
   std::vector<double> implied;
   for (const bool inferred : edges.inferred)

@@ -80,24 +80,21 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
   const Sketch chosen = sketch;
   sketch = close_sketch(sketch, world, last, &report);
   const WithMissing most = add_missing_edges(sketch, world, last, &report, progress);
-  FinishedSketch finished = finish_sketch(most, world, tags, last, &report, progress);
+  FinishedSketch finished = finish_sketch(most, world, last, &report, progress);
   if (finished.sketch.size() == 0)
     throw TooLittleError(scene.folder + ": expected curves on which the views agree, found none");
   tell_stop(options, &report, progress);
   SolidSearch solid = close_solid(finished.sketch, world, *detector, options, &report, progress);
   finished = complete_sketch(std::move(finished), &solid, world, options, &report, progress);
   rename_doubtful(leave_out_doubtful({chosen, most.sketch}, world, options, &finished), &solid);
-  const Sketch proposed = propose_hidden(finished.sketch, world, &report);
   report_sketch(finished, world, &report);
   const Blends blends = options.blends ? find_blends(finished.sketch, world, options) : Blends();
   return {finished.sketch,
           report,
-          proposed,
           view_names(world),
           posed.refined ? at_full_size(world.views, small, scene) : std::vector<View>(),
           tags,
           solid,
-          snaps_by_curve(finished),
           blends};
 }
 

@@ -3,8 +3,8 @@
 
 #include "datasets/readers/scene.h"
 #include "edges/tags/tag_square.h"
-#include "pipelines/stages/blends.h"
 #include "pipelines/base/run_report.h"
+#include "pipelines/stages/blends.h"
 #include "pipelines/stages/options.h"
 #include "pipelines/stages/stages.h"
 #include "sketches/graph/sketch.h"
@@ -15,13 +15,10 @@ namespace sketchsplat {
 struct Reconstruction {
   Sketch sketch;
   RunReport report;
-  /// Edges that the sketch implies and no view shows, see propose.h; no part of it.
-  Sketch proposed;
   std::vector<std::string> views;  ///< names of those that Evidence::views counts
   std::vector<View> refined;       ///< the cameras, if they are not those of the scene; else empty
   std::vector<TagSquare> tags;     ///< that were asked for
   SolidSearch solid;               ///< what the strokes bound, or why there is none
-  SnapOutcome snap;                ///< lengths that were made standard ones
   Blends blends;                   ///< rounded edges, if they were asked for; no part of the sketch
 };
 

@@ -199,12 +199,6 @@ bool wants_tags(const CadOptions& options) {
   return has_reference(options) && parse_scale_reference(options.scale_by).kind == Kind::kTag;
 }
 
-bool counts_curves(const CadOptions& options) {
-  if (!has_reference(options)) return false;
-  const Kind kind = parse_scale_reference(options.scale_by).kind;
-  return kind == Kind::kCircle || kind == Kind::kLine || kind == Kind::kNodes;
-}
-
 void check_scale(const CadOptions& options) {
   if (options.scale_given && has_reference(options))
     throw UsageError("--scale and --scale-by state the same thing: one of them, please");
@@ -230,20 +224,6 @@ KnownScale known_scale(const CadOptions& options, const Sketch& sketch, double f
   out.units_per_world = length / world.value;
   if (world.sigma > 0) out.sigma_relative = world.sigma / world.value;
   return out;
-}
-
-ScaleOf scale_of(const CadOptions& options) {
-  return [options](const Sketch& sketch, double footprint,
-                   const std::vector<TagSquare>& tags) -> std::optional<StatedScale> {
-    try {
-      const KnownScale known = known_scale(options, sketch, footprint, tags);
-      if (known.source.empty() && !options.unit_given) return std::nullopt;
-      const double sigma = std::isnan(known.sigma_relative) ? 0 : known.sigma_relative;
-      return StatedScale{known.unit, known.units_per_world, sigma};
-    } catch (const InputError&) {
-      return std::nullopt;
-    }
-  };
 }
 
 KnownScale stated_scale(const CadOptions& options, const std::string& sketch_json) {

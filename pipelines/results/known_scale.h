@@ -18,9 +18,6 @@ bool has_reference(const CadOptions& options);
 /// Does it ask for tags in the pictures?
 bool wants_tags(const CadOptions& options);
 
-/// Does it name curves or nodes by their numbers in a result?
-bool counts_curves(const CadOptions& options);
-
 /// Throws UsageError if two options state the scale.
 void check_scale(const CadOptions& options);
 
@@ -39,10 +36,6 @@ struct KnownScale {
 /// such thing in the sketch or if tags differ in size.
 KnownScale known_scale(const CadOptions& options, const Sketch& sketch, double footprint,
                        const std::vector<TagSquare>& tags);
-
-/// The same for ReconstructOptions::scale_of. A unit without a scale says that a world unit is one;
-/// what was asked for and is not in the sketch says nothing.
-ScaleOf scale_of(const CadOptions& options);
 
 /// The same from a sketch.json that says it, in the options' unit if the user gave one.
 KnownScale stated_scale(const CadOptions& options, const std::string& sketch_json);

@@ -14,7 +14,6 @@
 #include "pipelines/pages/overlay.h"
 #include "pipelines/results/known_scale.h"
 #include "pipelines/results/report.h"
-#include "pipelines/results/snap_output.h"
 #include "pipelines/results/solid_output.h"
 #include "sketches/io/io.h"
 #include "sketches/io/json.h"
@@ -145,11 +144,6 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
   if (footprint_of(reconstruction) > 0) extra["footprint"] = footprint_of(reconstruction);
   if (count_of(reconstruction, "pose_scale_sigma") > 0)
     extra["pose_scale_sigma"] = count_of(reconstruction, "pose_scale_sigma");
-  if (reconstruction.proposed.size() > 0) {
-    std::ostringstream proposed;
-    write_sketch_json(proposed, reconstruction.proposed);
-    extra["proposed"] = parse_json<Json>(proposed.str());
-  }
   // Names of files may hold bytes that are no UTF-8.
   const std::string members = json_text(extra);
   write_atomically(folder + "/sketch.json",
@@ -176,13 +170,7 @@ KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& opti
   write_sketch_json(file, reconstruction.sketch);
   const Sketch sketch = read_sketch_json(file, "sketch.json");
   try {
-    KnownScale scale =
-        known_scale(options, sketch, footprint_of(reconstruction), reconstruction.tags);
-    if (!has_reference(options) || reconstruction.snap.snaps.empty()) return scale;
-    // Standard lengths tell more of it.
-    scale.units_per_world = reconstruction.snap.scale.units_per_world;
-    scale.sigma_relative = reconstruction.snap.scale.sigma_relative;
-    return scale;
+    return known_scale(options, sketch, footprint_of(reconstruction), reconstruction.tags);
   } catch (const InputError& e) {
     warn(std::string(e.what()) + ": all lengths stay in world units", report, progress);
     KnownScale none;
@@ -219,7 +207,6 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
   {
     Stage stage("write", 0, &reconstruction.report, progress);
     scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
-    write_snaps(folder, reconstruction.snap);
     write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
     solid = write_solid(folder, reconstruction.solid,
                         solid_options(reconstruction, scene, scale, output_options));

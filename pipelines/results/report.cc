@@ -11,7 +11,6 @@
 #include "pipelines/base/version.h"
 #include "pipelines/pages/overlay.h"
 #include "pipelines/pages/page.h"
-#include "pipelines/results/snap_output.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/graph/inferred.h"
@@ -206,8 +205,6 @@ std::string report_json(const ReportInput& input) {
   json["counts"] = counts_json(input);
   if (input.scale && !input.scale->source.empty())
     json["scale"] = parse_json<Json>(scale_json(*input.scale));
-  if (input.reconstruction->snap.asked)
-    json["snap"] = parse_json<Json>(snap_json(input.reconstruction->snap));
   if (input.solid) json["solid"] = parse_json<Json>(solid_json(*input.solid));
   json["stages"] = stages_json(run, input.reproducible);
   json["rounds"] = rounds;

@@ -2,7 +2,6 @@
 // The last stages: gaps closed, missing edges added, the last polish and choice.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "datasets/types/errors.h"
 #include "pipelines/adjust/polish_tangent.h"
@@ -32,15 +31,14 @@ std::vector<int> numbers_after(const std::vector<bool>& stays) {
   return now;
 }
 
-// What at least so many of the strokes that stay share.
-template <typename T>
-void renumber(const std::vector<int>& now, size_t least, std::vector<T>* kept) {
-  for (T& r : *kept) {
+// What two of the strokes that stay share, at least.
+void renumber(const std::vector<int>& now, std::vector<Regularity>* kept) {
+  for (Regularity& r : *kept) {
     for (int& s : r.strokes) s = now[s];
     r.strokes.erase(std::remove(r.strokes.begin(), r.strokes.end(), -1), r.strokes.end());
   }
   kept->erase(std::remove_if(kept->begin(), kept->end(),
-                             [&](const T& r) { return r.strokes.size() < least; }),
+                             [](const Regularity& r) { return r.strokes.size() < 2; }),
               kept->end());
 }
 
@@ -100,45 +98,6 @@ Sketch without_improbable(Sketch sketch, int first, const MissingEdges& missing,
   }
   *left = int(std::count(keep.begin() + first, keep.end(), true));
   return keep_strokes(sketch, keep);
-}
-
-// The scale of the strokes as they will be written.
-std::optional<StatedScale> scale_of(const Sketch& sketch, const EdgeWorld& world,
-                                    const std::vector<TagSquare>& tags,
-                                    const ReconstructOptions& options) {
-  if (!options.scale_of) return std::nullopt;
-  Sketch judged = sketch;
-  const StrokeObservation o = with_evidence(world, options, &judged);
-  record_confidence(stroke_features(judged, world, o), &judged);
-  return options.scale_of(keep_confident(judged, options.min_confidence), world.footprint, tags);
-}
-
-// With lengths that are standard ones, if the scale is known; else it says so.
-Sketch snapped(const Regularized& regular, const StrokeObservation& seen, const EdgeWorld& world,
-               const std::vector<TagSquare>& tags, const ReconstructOptions& options,
-               SnapOutcome* out, RunReport* report, Progress* progress) {
-  const std::optional<StatedScale> scale = scale_of(regular.sketch, world, tags, options);
-  if (!scale) {
-    warn("--snap " + options.snap + ": nobody says how large the part is (--unit, --scale, " +
-             "--scale-by): nothing is snapped",
-         report, progress);
-    return regular.sketch;
-  }
-  const StandardSystem system = standard_system(options.snap);
-  const LengthUnit unit =
-      system == StandardSystem::kInch ? LengthUnit::kInch : LengthUnit::kMillimetre;
-  const double factor = millimetres(scale->unit) / millimetres(unit);
-  const Snapped s = snap_to_standards(regular, seen, world.footprint,
-                                      {scale->units_per_world * factor, scale->sigma_relative},
-                                      system, regularize_options(options));
-  if (!s.why_none.empty()) warn("nothing is snapped: " + s.why_none, report, progress);
-  out->snaps = s.snaps;
-  out->hypotheses = s.hypotheses;
-  out->unit = length_unit_names()[int(unit)];
-  out->scale = *scale;
-  out->scale.units_per_world *= s.scale;
-  if (!s.snaps.empty()) out->scale.sigma_relative = s.scale_sigma;
-  return s.sketch;
 }
 
 }  // namespace
@@ -236,27 +195,20 @@ void put_back_rings(const Sketch& before, const std::vector<ControlPoints>& ring
 }  // namespace
 
 FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
-                             const std::vector<TagSquare>& tags, const ReconstructOptions& options,
-                             RunReport* report, Progress* progress) {
+                             const ReconstructOptions& options, RunReport* report,
+                             Progress* progress) {
   Stage stage("polish", 0, report, progress);
   const Sketch& sketch = all.sketch;
   FinishedSketch out;
   out.sketch = sketch;
-  out.snap.asked = options.snap != "none";
   if (options.final_polish) {
     Observation last;
     out.sketch = polish_tangent(sketch, world, last_polish(options), prices(options), &last);
-    if (last.layout.size() > 0 && !options.deadline.passed()) {
-      const StrokeObservation seen = with_strokes(std::move(last), world, 1);
-      Regularized regular;
-      regular.sketch = out.sketch;
-      if (options.regularize.on) {
-        regular = regularize(out.sketch, seen, world.footprint, regularize_options(options));
-        report->counts.push_back({"regular_nats_saved", regular.nats_saved});
-      }
-      out.sketch = out.snap.asked
-                       ? snapped(regular, seen, world, tags, options, &out.snap, report, progress)
-                       : regular.sketch;
+    if (options.regularize.on && last.layout.size() > 0 && !options.deadline.passed()) {
+      Regularized regular = regularize(out.sketch, with_strokes(std::move(last), world, 1),
+                                       world.footprint, regularize_options(options));
+      report->counts.push_back({"regular_nats_saved", regular.nats_saved});
+      out.sketch = std::move(regular.sketch);
       out.kept = std::move(regular.kept);
     }
   }
@@ -306,8 +258,7 @@ std::vector<int> leave_out_doubtful(const StrokeOrigins& origins, const EdgeWorl
     if (stays.back()) features.push_back(std::move(finished->features[s]));
   }
   const std::vector<int> now = numbers_after(stays);
-  renumber(now, 2, &finished->kept);
-  renumber(now, 1, &finished->snap.snaps);
+  renumber(now, &finished->kept);
   finished->features = std::move(features);
   const int before = finished->sketch.size();
   finished->sketch = keep_strokes(finished->sketch, stays);
@@ -319,18 +270,6 @@ std::vector<int> leave_out_doubtful(const StrokeOrigins& origins, const EdgeWorl
                                     : "expected edges, found " + std::to_string(before) +
                                           " rounded ones alone");
   return now;
-}
-
-SnapOutcome snaps_by_curve(const FinishedSketch& finished) {
-  SnapOutcome out = finished.snap;
-  const std::vector<int> curve =
-      chain_of_strokes(curve_chains(finished.sketch), finished.sketch.size());
-  for (Snap& snap : out.snaps) {
-    std::set<int> curves;
-    for (const int s : snap.strokes) curves.insert(curve[s]);
-    snap.strokes.assign(curves.begin(), curves.end());
-  }
-  return out;
 }
 
 void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report) {

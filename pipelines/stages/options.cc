@@ -4,7 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "pipelines/adjust/standard_series.h"
 #include "pipelines/stages/scale_reference.h"
 #include "pipelines/stages/steps.h"
 
@@ -157,9 +156,6 @@ void list_choices(ReconstructOptions* o, Fields* f) {
                        "What results of siblings, parts of the same family, have in common is the "
                        "start");
   like.several = like.takes_more = true;
-  f->choose("snap", &o->snap, standard_system_names(),
-            "Radii and distances become standard ones where the pictures agree, if the scale is "
-            "known");
   list_without(o, f);
   f->add("inferred", &o->inferred,
          "Edges that no picture shows and the solid implies are written, too");

@@ -2,13 +2,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "edges/tags/tag_square.h"
 #include "edges/views/lift.h"
 #include "edges/views/match.h"
 #include "pipelines/adjust/optimize.h"
@@ -37,21 +34,10 @@ struct CommonOptions {
   int seed = 0;
   bool quiet = false;
   bool verbose = false;
-  bool json = false;  ///< results on standard output as JSON
-  std::string log;    ///< file for everything that is said, too; empty: none
+  bool json = false;                ///< results on standard output as JSON
+  std::string log;                  ///< file for everything that is said, too; empty: none
   std::string config, save_config;  ///< files of options, see config_file.h; empty: none
 };
-
-/// How large a world unit is, as the user says.
-struct StatedScale {
-  LengthUnit unit = LengthUnit::kMillimetre;
-  double units_per_world = 1;
-  double sigma_relative = 0;
-};
-/// What is said of a sketch with evidence, numbered as its file; `footprint`: world length of a
-/// pixel at the part. Nothing: nobody knows.
-using ScaleOf = std::function<std::optional<StatedScale>(const Sketch& sketch, double footprint,
-                                                         const std::vector<TagSquare>& tags)>;
 
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
 struct ReconstructOptions : DetectionOptions {
@@ -73,8 +59,6 @@ struct ReconstructOptions : DetectionOptions {
   MissingOptions missing;
   CloseOptions close;
   RegularizeOptions regularize;
-  std::string snap = "none";  ///< series of standard lengths, see standard_series.h
-  ScaleOf scale_of;           ///< set by the caller, for `snap`
   int rounds = 3;            ///< of drawing, moving and simplifying; fewer if nothing changes
   bool simplify = true;      ///< run the topology passes between the rounds
   bool early_polish = true;  ///< least squares on the edgels in the fit and between the rounds, too
@@ -88,23 +72,23 @@ struct ReconstructOptions : DetectionOptions {
   bool blends = false;            ///< find rounded edges, too; no strokes
   double blend_px = 40;           ///< [px] largest radius of one
   bool inferred = true;           ///< edges that no image shows and the solid implies
-  std::string like;         ///< sketches of siblings, one a line; empty: none
-  std::string like_folder;  ///< that these are below, if their paths are relative; not told
-  double min_confidence = 0;  ///< probability below which a stroke is left out at last
+  std::string like;               ///< sketches of siblings, one a line; empty: none
+  std::string like_folder;        ///< that these are below, if their paths are relative; not told
+  double min_confidence = 0;      ///< probability below which a stroke is left out at last
   std::string box_text = "auto";  ///< as the user gives it
-  Eigen::AlignedBox3d box;    ///< world units: only what is in it is the object; empty: found out
-  bool tags = false;          ///< measure AprilTags; what is on them is not the object
-  double budget = 0;          ///< [s] after which nothing is refined any more; 0: none
-  Deadline deadline;          ///< of this run: set by reconstruct()
+  Eigen::AlignedBox3d box;  ///< world units: only what is in it is the object; empty: found out
+  bool tags = false;        ///< measure AprilTags; what is on them is not the object
+  double budget = 0;        ///< [s] after which nothing is refined any more; 0: none
+  Deadline deadline;        ///< of this run: set by reconstruct()
 };
 
 /// What files for CAD programs say beside the curves.
 struct CadOptions {
   LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
   double scale = 1.0;                         ///< units per world unit
-  std::string scale_by = "none";  ///< what tells the scale instead, see known_scale.h
+  std::string scale_by = "none";              ///< what tells the scale instead, see known_scale.h
   bool unit_given = false, scale_given = false;  ///< by the user
-  bool faces = false;                         ///< closed planar loops as faces, in STEP
+  bool faces = false;                            ///< closed planar loops as faces, in STEP
   PlanarFaceOptions face;
 };
 

@@ -13,7 +13,6 @@
 #include "pipelines/survey/confidence.h"
 #include "pipelines/survey/observe.h"
 #include "pipelines/survey/other_things.h"
-#include "pipelines/survey/propose.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/fit/segment.h"
 
@@ -287,12 +286,6 @@ Sketch look_again(const Sketch& sketch, const EdgeWorld& world,
   const Round more = with_rest(sketch, world, options, report, progress);
   if (!more.changed || options.rounds == 0) return more.sketch;
   return run_round(more.sketch, world, targets, options, report, progress).sketch;
-}
-
-Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report) {
-  const Sketch proposed = propose_edges(sketch, world);
-  report->counts.push_back({"proposed", double(proposed.size())});
-  return proposed;
 }
 
 std::vector<std::string> view_names(const EdgeWorld& world) {

@@ -8,7 +8,7 @@
 #include "edges/tags/tag_square.h"
 #include "edges/views/lift.h"
 #include "pipelines/adjust/optimize.h"
-#include "pipelines/adjust/snap.h"
+#include "pipelines/adjust/regularize.h"
 #include "pipelines/base/run_report.h"
 #include "pipelines/stages/options.h"
 #include "pipelines/survey/rounded.h"
@@ -102,15 +102,6 @@ WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world,
                               const ReconstructOptions& options, RunReport* report,
                               Progress* progress);
 
-/// What `snap` did, in the user's words.
-struct SnapOutcome {
-  bool asked = false;
-  std::vector<Snap> snaps;
-  int hypotheses = 0;  ///< lengths that could have been standard ones
-  std::string unit;    ///< of the snaps: "mm", "inch"
-  StatedScale scale;   ///< with which they are standard ones
-};
-
 /// A sketch with what is known of it.
 struct FinishedSketch {
   Sketch sketch;                  ///< with evidence
@@ -119,18 +110,16 @@ struct FinishedSketch {
   int unsure = 0;                 ///< strokes that were left out as less probable than asked for
   int rounded = 0;                ///< and others that were left out as rounded edges
   double edgel_sigma_px = 0;      ///< of the edgels about the strokes
-  SnapOutcome snap;               ///< lengths that were made standard ones
 };
 
 /// As the options say, but that what is nearly one curve becomes one.
 PolishOptions last_polish(const ReconstructOptions& options);
 
-/// Last polish on the edgels, regularities, standard lengths, and the evidence. Corners in pockets
-/// and rings of patterns that move by more than a pixel go back: few views see them, and others
-/// what hides them. `tags`: that were measured, for the scale.
+/// Last polish on the edgels, regularities, and the evidence. Corners in pockets and rings of
+/// patterns that move by more than a pixel go back: few views see them, and others what hides them.
 FinishedSketch finish_sketch(const WithMissing& all, const EdgeWorld& world,
-                             const std::vector<TagSquare>& tags, const ReconstructOptions& options,
-                             RunReport* report, Progress* progress);
+                             const ReconstructOptions& options, RunReport* report,
+                             Progress* progress);
 
 /// Fills in evidence and features. `implied`: per stroke the probability that something else than
 /// the images gives it, or none. A stroke that is probable by this alone has the evidence of one
@@ -146,12 +135,6 @@ std::vector<int> leave_out_doubtful(const StrokeOrigins& origins, const EdgeWorl
 
 /// Fills the report's strokes, regularities (by curve, see curve_chain.h) and counts.
 void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, RunReport* report);
-
-/// The snaps, by curves instead of strokes.
-SnapOutcome snaps_by_curve(const FinishedSketch& finished);
-
-/// Edges that no view shows but the graph implies (propose.h); counts them in the report.
-Sketch propose_hidden(const Sketch& sketch, const EdgeWorld& world, RunReport* report);
 
 /// Of every view, in the order that Evidence::views counts in.
 std::vector<std::string> view_names(const EdgeWorld& world);

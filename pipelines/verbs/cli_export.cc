@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
@@ -31,7 +30,6 @@ struct ExportArguments {
   std::string format;  // empty: by the ending of `out`
   CadOptions cad;
   double min_confidence = 0;
-  bool proposed = false;
   double deflection = 1e-4;
   double spacing = OutputOptions().point_spacing;
 };
@@ -53,38 +51,12 @@ std::string format_of(const std::string& path) {
 }
 
 // What sketch.json holds beside the sketch: the options, the names of the views.
-std::string other_members(const std::string& path, bool without_proposed, const KnownScale& scale) {
+std::string other_members(const std::string& path, const KnownScale& scale) {
   std::ifstream in(path);
   Json j = parse_json<Json>(in, path);
   for (const char* key : {"format_version", "nodes", "strokes"}) j.erase(key);
-  if (without_proposed) j.erase("proposed");
   if (!scale.source.empty()) j["scale"] = parse_json<Json>(scale_json(scale));
   return json_text(j);
-}
-
-// The edges that nobody saw join the nodes of the others.
-Sketch with_proposed(Sketch sketch, const std::string& given) {
-  const std::string path = sketch_file(given);
-  std::ifstream in(path);
-  const auto j = parse_json<Json>(in, path);
-  if (!j.contains("proposed")) return sketch;
-  std::istringstream text(json_text(j["proposed"]));
-  const Sketch proposed = read_sketch_json(text, path + ": proposed");
-  std::vector<int> node;
-  for (int n = 0; n < proposed.nodes.cols(); ++n) {
-    int same = 0;
-    while (same < sketch.nodes.cols() && sketch.nodes.col(same) != proposed.nodes.col(n)) ++same;
-    node.push_back(same < sketch.nodes.cols() ? same : sketch.add_node(proposed.nodes.col(n)));
-  }
-  for (int i = 0; i < proposed.size(); ++i) {
-    const Stroke& s = proposed.strokes[i];
-    std::vector<Eigen::Vector3d> handles;
-    for (int h = 0; h < num_handles(s.kind); ++h)
-      handles.push_back(proposed.handles.col(s.handle + h));
-    sketch.add_stroke(s.kind, s.begin < 0 ? -1 : node[s.begin], s.end < 0 ? -1 : node[s.end],
-                      handles, proposed.evidence[i]);
-  }
-  return sketch;
 }
 
 // From the options, or else from the file.
@@ -113,8 +85,7 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
   } else if (format == "parametric") {
     write_parametric_edges(out, sketch);
   } else {
-    write_sketch_json(out, sketch,
-                      other_members(sketch_file(arguments.sketch), arguments.proposed, scale));
+    write_sketch_json(out, sketch, other_members(sketch_file(arguments.sketch), scale));
   }
 }
 
@@ -170,8 +141,7 @@ void run_export(const ExportArguments& arguments, bool json, Progress* progress)
   if (format.empty())
     throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
   check(arguments, format);
-  Sketch all = read_sketch(arguments.sketch);
-  if (arguments.proposed) all = with_proposed(all, arguments.sketch);
+  const Sketch all = read_sketch(arguments.sketch);
   const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
   const KnownScale scale = scale_of(all, arguments);
   write_atomically(arguments.out,
@@ -206,7 +176,6 @@ Verb export_verb() {
   f.group("Output");
   f.add("min-confidence", &arguments->min_confidence, "", 0, 1,
         "Less probable strokes are left out, unless nobody knows");
-  f.add("proposed", &arguments->proposed, "Add the edges that no view shows but others imply");
   f.add("deflection", &arguments->deflection, "of the extent", 1e-7, 0.1,
         "Largest distance of a chord to its curve in OBJ");
   f.add("spacing", &arguments->spacing, "of the extent", 1e-5, 1, "Distance of the samples in PLY");

@@ -113,16 +113,7 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
   tell_scale(scale);
 }
 
-void tell_snaps(const SnapOutcome& snap) {
-  if (!snap.asked || snap.unit.empty()) return;
-  std::cout << snap.snaps.size() << " of " << snap.hypotheses << " lengths are standard ones\n";
-  for (const Snap& s : snap.snaps)
-    std::cout << "  " << length_name(s.kind) << " " << s.standard << " " << snap.unit << " ("
-              << s.series << "), measured " << s.measured << " with a standard deviation of "
-              << s.sigma << "\n";
-}
-
-void tell_result(const Sketch& sketch, const SnapOutcome& snap, const KnownScale& scale,
+void tell_result(const Sketch& sketch, const KnownScale& scale,
                  const ReconstructArguments& arguments, bool json) {
   if (json) {
     std::ifstream in(arguments.out + "/report.json");
@@ -134,7 +125,6 @@ void tell_result(const Sketch& sketch, const SnapOutcome& snap, const KnownScale
   std::cout << arguments.out << "/sketch.step: " << sketch.size() << " curves, "
             << sketch.nodes.cols() << " junctions\n"
             << arguments.out << "/report.html: to look at\n";
-  tell_snaps(snap);
   tell_scale(scale);
 }
 
@@ -164,12 +154,7 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
                      Progress* progress) {
   arguments.method.seed = common.seed;
   check_scale(arguments.output.cad);
-  if (arguments.method.snap != "none" && counts_curves(arguments.output.cad))
-    throw UsageError(
-        "--snap needs a scale from tag, diameter, size, --scale or --unit: curves have no numbers "
-        "yet");
   arguments.method.tags = wants_tags(arguments.output.cad);
-  arguments.method.scale_of = scale_of(arguments.output.cad);
   if (!arguments.scene.empty() && !arguments.images.empty())
     throw UsageError("reconstruct takes SCENE or --images DIR, not both");
   if (arguments.dry_run) {
@@ -190,7 +175,7 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   report.warnings.insert(report.warnings.begin(), before.warnings.begin(), before.warnings.end());
   const KnownScale scale = write_outputs(arguments.out, result, scene, album, arguments.method,
                                          arguments.output, progress);
-  tell_result(result.sketch, result.snap, scale, arguments, common.json);
+  tell_result(result.sketch, scale, arguments, common.json);
 }
 
 }  // namespace

@@ -150,9 +150,7 @@ void add_relations(Relations* relations, double hold, Sketch* s, ceres::Problem*
   for (SharedQuantity& q : relations->shared) {
     double* block = q.value.data();
     if (!problem->HasParameterBlock(block)) continue;
-    if (q.fixed)
-      problem->SetParameterBlockConstant(block);
-    else if (q.kind == SharedKind::kDirection)
+    if (q.kind == SharedKind::kDirection)
       problem->SetManifold(block, new ceres::SphereManifold<3>);
     else
       problem->AddResidualBlock(

@@ -105,14 +105,6 @@ struct RelationResidual {
       }
       case RelationKind::kTangent:
         break;
-      case RelationKind::kApart: {
-        const T gap = own > 0 ? (Vec3<T>(Block<T>(p[1])) - Vec3<T>(Block<T>(p[0])))
-                                    .cross(first.normalized())
-                                    .norm()
-                              : p[2][0] - p[1][0];
-        r[0] = scale * (gap - T(relation.distance));
-        return true;
-      }
     }
     return false;
   }
@@ -171,7 +163,7 @@ Cost* make_cost(const Sketch& sketch, const Relations& relations, const Relation
 
 const char* relation_name(RelationKind kind) {
   constexpr const char* kNames[] = {"parallel",     "perpendicular", "coplanar", "coaxial",
-                                    "equal_radius", "symmetric",     "tangent",  "apart"};
+                                    "equal_radius", "symmetric",     "tangent"};
   return kNames[int(kind)];
 }
 

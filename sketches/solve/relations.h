@@ -19,7 +19,6 @@ struct SharedQuantity {
   SharedKind kind = SharedKind::kDirection;
   int direction = -1;  ///< plane and axis: the shared direction that is normal to it, or along it
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  bool fixed = false;  ///< it is known, and not estimated
 };
 
 /// How one stroke or point keeps to a shared quantity:
@@ -31,8 +30,6 @@ struct SharedQuantity {
 ///   symmetric      two points that mirror one another in a shared plane          3
 ///   tangent        an arc, and a line or an arc that goes on from it: nothing    2
 ///                  is shared
-///   apart          two planes of one direction, or two points across a           1
-///                  direction (of two lines along it), at a given distance
 enum class RelationKind {
   kParallel,
   kPerpendicular,
@@ -40,28 +37,26 @@ enum class RelationKind {
   kCoaxial,
   kEqualRadius,
   kSymmetric,
-  kTangent,
-  kApart
+  kTangent
 };
-constexpr int kRelationKinds = 7;  ///< that are found in sketches: all but the last
+constexpr int kRelationKinds = 7;
 const char* relation_name(RelationKind kind);
 
 struct Relation {
   RelationKind kind = RelationKind::kParallel;
   int shared = -1;  ///< index of the quantity; tangent: none
-  int other = -1;   ///< perpendicular, apart: the second direction or plane
+  int other = -1;   ///< perpendicular: the second direction
   int stroke = -1;  ///< parallel, coaxial, equal radius, tangent
-  /// Coplanar, symmetric, apart: a node, or the number of nodes plus a handle; tangent: the node.
+  /// Coplanar, symmetric: a node, or the number of nodes plus a handle; tangent: the node.
   int point = -1;
-  int twin = -1;  ///< symmetric, apart: the other point
+  int twin = -1;  ///< symmetric: the other point
   /// Parallel, coaxial, symmetric, tangent: unit vectors across the direction, in which residuals
   /// are stated.
   Eigen::Matrix<double, 2, 3> across = Eigen::Matrix<double, 2, 3>::Zero();
   double sign = 1;   ///< parallel: -1 if the stroke runs against the direction
   double scale = 1;  ///< [px per unit of the residual], the unit being a radian or a world length
   double sigma = 1;  ///< [px] standard deviation at which it is imposed
-  double distance = 0;  ///< apart: world units
-  int partner = -1;     ///< tangent: the other stroke
+  int partner = -1;  ///< tangent: the other stroke
 };
 
 struct Relations {

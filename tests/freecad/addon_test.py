@@ -63,12 +63,6 @@ class ReadingTest(FolderTest):
             json.dump({"options": {"unit": "cm"}}, file)
         self.assertEqual(self.read(parts.plate()).mm_per_world, 10)
 
-    def test_proposed_strokes_are_inferred(self):
-        sketch = self.read(parts.plate(), proposed=parts.hexagon().content())
-        self.assertEqual(len(sketch.proposed.strokes), 6)
-        self.assertTrue(all(s.inferred for s in sketch.proposed.strokes))
-        self.assertFalse(any(s.inferred for s in sketch.strokes))
-
     def test_bad_files_are_one_line_that_says_what_was_expected(self):
         def broken(change):
             content = parts.plate().content()

@@ -71,39 +71,12 @@ TEST_F(Export, MinConfidenceLeavesOutStrokesAndTheNodesThatNobodyUsesThen) {
 }
 
 TEST_F(Export, StrokesOfUnknownConfidenceStayAndTheUserIsTold) {
-  const Outcome o = run("export " + written(square_and_line()) +
-                        " --min-confidence 0.9 --out " + in_folder("all.obj"));
+  const Outcome o = run("export " + written(square_and_line()) + " --min-confidence 0.9 --out " +
+                        in_folder("all.obj"));
   EXPECT_EQ(o.status, 0);
   EXPECT_THAT(o.err, HasSubstr("knows no confidence"));
   EXPECT_THAT(text_of_file(folder_ / "all.obj"), HasSubstr("l 5 6"));
   EXPECT_EQ(exported(square_and_line(), "plain.obj"), text_of_file(folder_ / "all.obj"));
-}
-
-TEST_F(Export, ProposedEdgesAreWrittenOnlyIfAskedForAndShareTheirNodes) {
-  Sketch all = square_and_line(), proposed;
-  for (Evidence& e : all.evidence) e.confidence = 0.9;
-  const int a = proposed.add_node({1, 1, 0}), b = proposed.add_node({0.75, 0.5, 3});
-  proposed.add_stroke(StrokeKind::kLine, a, b, {});
-  proposed.evidence[0].confidence = 0.3;
-  std::ostringstream text;
-  write_sketch_json(text, proposed);
-  const std::string path = written(all, R"({"proposed": )" + text.str() + "}");
-  const auto exported_with = [&](const std::string& options) {
-    const Outcome o =
-        run("export " + path + " --format sketch --out " + in_folder("x.json") + options);
-    EXPECT_EQ(o.status, 0) << o.err;
-    std::ifstream in(folder_ / "x.json");
-    return read_sketch_json(in, "x.json");
-  };
-  EXPECT_EQ(exported_with("").size(), 5);
-  EXPECT_THAT(text_of_file(folder_ / "x.json"), HasSubstr("\"proposed\""));
-  const Sketch with = exported_with(" --proposed");
-  ASSERT_EQ(with.size(), 6);
-  EXPECT_EQ(with.nodes.cols(), 6);
-  EXPECT_EQ(with.strokes[5].begin, 2);
-  EXPECT_EQ(with.strokes[5].end, 5);
-  EXPECT_EQ(exported_with(" --proposed --min-confidence 0.5").size(), 5);
-  EXPECT_THAT(text_of_file(folder_ / "x.json"), Not(HasSubstr("\"proposed\"")));
 }
 
 TEST_F(Export, ScaleMultipliesTheCoordinates) {

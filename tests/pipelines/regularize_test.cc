@@ -176,7 +176,7 @@ TEST(Regularize, CubicsThatGoOnSmoothlyStillDoSo) {
   options.refine.smooth_weight = std::pow(1 / (0.02 * M_PI / 180), 2);
   const Regularized bound =
       regularize(free, with_strokes(last, world, 1), world.footprint, options);
-  EXPECT_GT(bound.imposed.list.size(), 0u);
+  EXPECT_GT(bound.kept.size(), 0u);
   const std::vector<SmoothJoint> joints = find_smooth_joints(bound.sketch, 0.2);
   ASSERT_EQ(joints.size(), 1u);
   EXPECT_LT(joints[0].angle, 0.1 * M_PI / 180);

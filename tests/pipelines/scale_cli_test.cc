@@ -55,41 +55,6 @@ class Scale : public Program {
 };
 std::string Scale::base_, Scale::scene_, Scale::photos_, Scale::result_;
 
-TEST_F(Scale, LengthsBecomeStandardOnesWhereTheScaleIsKnownAndAreListed) {
-  const std::string command = "reconstruct " + scene_ + " --preset fast --overlays 0 --solid off";
-  const Outcome o =
-      run(command + " --snap iso --scale 100 --unit mm --out " + in_folder("snapped"));
-  ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("lengths are standard ones\n"));
-  EXPECT_THAT(o.out, HasSubstr("plane distance 100 mm (whole 10 mm), measured "));
-  const json snap = json_in(folder_ / "snapped/report.json")["snap"];
-  EXPECT_EQ(snap["unit"], "mm");
-  bool whole = false;  // the part is 1 long in the world
-  for (const json& s : snap["snaps"]) {
-    whole = whole || (s["kind"] == "plane distance" && s["standard"] == 100);
-    EXPECT_LE(s["chi2_growth"], s["chi2_most"]);
-    EXPECT_LE(s["moved_px"], s["noise_px"]);
-    EXPECT_NEAR(s["deviation"], s["standard"].get<double>() - s["measured"].get<double>(), 1e-9);
-  }
-  EXPECT_TRUE(whole);
-  const std::string csv = text_of_file(folder_ / "snapped/snaps.csv");
-  EXPECT_EQ(count_lines(csv), 1 + int(snap["snaps"].size()));
-  EXPECT_THAT(csv, HasSubstr("\nplane distance,"));
-
-  ASSERT_EQ(run(command + " --out " + in_folder("plain")).status, 0);
-  const Outcome vague = run(command + " --snap inch --out " + in_folder("vague"));
-  EXPECT_EQ(vague.status, 0);
-  EXPECT_THAT(vague.err, HasSubstr("nobody says how large the part is"));
-  EXPECT_FALSE(fs::exists(folder_ / "vague/snaps.csv"));
-  EXPECT_FALSE(fs::exists(folder_ / "plain/snaps.csv"));
-  EXPECT_FALSE(json_in(folder_ / "plain/report.json").contains("snap"));
-  EXPECT_EQ(text_of_file(folder_ / "vague/sketch.step"),
-            text_of_file(folder_ / "plain/sketch.step"))
-      << "nothing is touched";
-  EXPECT_EQ(run(command + " --snap iso --scale-by circle:0=2cm --out " + in_folder("none")).status,
-            2);
-}
-
 TEST_F(Scale, AKnownDiameterScalesTheCadFilesAndLeavesTheOthersInWorldUnits) {
   const json sketch = json_in(result_ + "/sketch.json"), report = json_in(result_ + "/report.json");
   const double scale = 20 / largest_diameter(sketch);

@@ -115,10 +115,10 @@ TEST(WorldStages, CornersInPocketsDoNotMoveFarFromWhereTheRimHasThem) {
   sketch.add_stroke(StrokeKind::kLine, a, b, {});
   ReconstructOptions options;
   RunReport report;
-  const Sketch free = finish_sketch({sketch, {}, {}}, world, {}, options, &report, nullptr).sketch;
+  const Sketch free = finish_sketch({sketch, {}, {}}, world, options, &report, nullptr).sketch;
   EXPECT_NEAR(free.nodes(2, 0), corner.z(), 0.3 * world.footprint) << "it may slide along";
   const Sketch held =
-      finish_sketch({sketch, {stated}, {}}, world, {}, options, &report, nullptr).sketch;
+      finish_sketch({sketch, {stated}, {}}, world, options, &report, nullptr).sketch;
   EXPECT_LT((held.nodes.col(0) - stated).norm(), 1e-12);
   EXPECT_LT((held.nodes.col(1) - free.nodes.col(1)).norm(), 1e-12) << "others are free";
 }

@@ -36,8 +36,7 @@ Cylinder cylinder() {
               {SharedKind::kDirection, -1, x},
               {SharedKind::kPlane, 0, Vector3d(axis.dot(centre - r.origin), 0, 0)},
               {SharedKind::kAxis, 0, centre - 3 * axis},
-              {SharedKind::kRadius, -1, Vector3d(0.4, 0, 0)},
-              {SharedKind::kPlane, 0, Vector3d(axis.dot(centre - r.origin) + 0.7, 0, 0)}};
+              {SharedKind::kRadius, -1, Vector3d(0.4, 0, 0)}};
   Eigen::Matrix<double, 2, 3> across;
   across << x.transpose(), y.transpose();
   for (int i = 0; i < 4; ++i) {
@@ -58,8 +57,6 @@ Cylinder cylinder() {
   for (Relation& relation : r.list)
     if (relation.point >= 6) relation.point += 2;  // a handle
   r.list.push_back({RelationKind::kSymmetric, 2, -1, -1, a, b, across, 1, 100, 0.05});
-  r.list.push_back({RelationKind::kApart, 2, 5, -1, -1, -1, across, 1, 100, 0.05, 0.7});
-  r.list.push_back({RelationKind::kApart, 1, -1, -1, a, b, across, 1, 100, 0.05, 0.6});
   return c;
 }
 
