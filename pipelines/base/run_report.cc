@@ -21,28 +21,36 @@ double peak_memory_mb() {
   return double(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts in KiB
 }
 
-Stage::Stage(const std::string& name, int total, RunReport* report, Progress* progress)
-    : name_(name), report_(report), progress_(progress), began_(std::chrono::steady_clock::now()) {
-  if (progress_) progress_->begin(name, total);
+void RunLog::count(const std::string& name, double value) const {
+  if (report) report->counts.push_back({name, value});
+}
+
+void RunLog::warn(const std::string& text) const {
+  if (report) report->warnings.push_back(text);
+  if (progress) progress->warn(text);
+}
+
+void RunLog::note(const std::string& text) const {
+  if (progress) progress->note(text);
+}
+
+Stage::Stage(const std::string& name, const RunLog& log, int total)
+    : name_(name), log_(log), began_(std::chrono::steady_clock::now()) {
+  if (log_.progress) log_.progress->begin(name, total);
 }
 
 Stage::~Stage() {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began_;
   try {
-    if (report_) report_->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
-    if (progress_) progress_->end(result_);
+    if (log_.report) log_.report->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
+    if (log_.progress) log_.progress->end(result_);
   } catch (const std::bad_alloc&) {
     // Nothing may leave a destructor. Whoever has run out of memory says so; this is but a story.
   }
 }
 
 void Stage::step() {
-  if (progress_) progress_->step();
-}
-
-void warn(const std::string& text, RunReport* report, Progress* progress) {
-  if (report) report->warnings.push_back(text);
-  if (progress) progress->warn(text);
+  if (log_.progress) log_.progress->step();
 }
 
 }  // namespace sketchsplat

@@ -36,12 +36,21 @@ struct RunReport {
 /// Peak resident memory of this process so far [MB = 1e6 bytes].
 double peak_memory_mb();
 
-/// A stage from construction to destruction: times it into the report and tells the progress.
-/// `report` and `progress` may be null.
+/// Where a run is written down, and who watches it; both may be null.
+struct RunLog {
+  RunReport* report = nullptr;
+  Progress* progress = nullptr;
+
+  void count(const std::string& name, double value) const;  ///< one of the report's counts
+  void warn(const std::string& text) const;                 ///< to both
+  void note(const std::string& text) const;                 ///< to those who watch closely
+};
+
+/// A stage from construction to destruction, timed into the report.
 class Stage {
  public:
   /// `total` is the number of step()s that will come; 0 if nobody knows.
-  Stage(const std::string& name, int total, RunReport* report, Progress* progress);
+  Stage(const std::string& name, const RunLog& log, int total = 0);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
@@ -51,12 +60,8 @@ class Stage {
 
  private:
   std::string name_, result_;
-  RunReport* report_;
-  Progress* progress_;
+  RunLog log_;
   std::chrono::steady_clock::time_point began_;
 };
-
-/// Adds a warning to the report and tells the progress; both may be null.
-void warn(const std::string& text, RunReport* report, Progress* progress);
 
 }  // namespace sketchsplat

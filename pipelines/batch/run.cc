@@ -99,7 +99,7 @@ class Coordinator {
 
   void work() {
     KeptSignals signals;
-    Stage stage("batch", int(plan_.open.size()), nullptr, progress_);
+    Stage stage("batch", {nullptr, progress_}, int(plan_.open.size()));
     for (;;) {
       start_what_fits();
       if (workers_.empty()) break;
@@ -256,7 +256,7 @@ BatchPlan plan_batch(const std::vector<PlannedScene>& scenes, const BatchRun& ru
     open.push_back(scenes[i].scene);
   }
   if (open.empty()) return plan;
-  Stage stage("look", int(open.size()), nullptr, progress);
+  Stage stage("look", {nullptr, progress}, int(open.size()));
   for (const SceneSize& size : scene_sizes(open, run.open, kPatienceSeconds, [&] { stage.step(); }))
     plan.loads.push_back(expected_load(size.views, size.pixels, run.method, run.threads));
   const int places = run.jobs > 0 ? run.jobs : std::max(1, usable_cores() / run.threads);

@@ -10,7 +10,8 @@
 #include "pipelines/base/schedule.h"
 #include "pipelines/batch/store.h"
 #include "pipelines/batch/summary.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
+#include "pipelines/options/output_options.h"
 
 namespace sketchsplat {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipelines/stages/options.h"
+#include "pipelines/options/common_options.h"
 
 namespace sketchsplat {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipelines/base/run_report.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/common_options.h"
 
 namespace sketchsplat {
 

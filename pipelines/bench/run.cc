@@ -122,7 +122,7 @@ void run_axis(const BenchRun& run, const BenchAxis* axis, Measurer* measurer, Ro
   const std::vector<BenchLevel> levels = plan_jobs(run.suite, axis, run.with);
   size_t total = 0;
   for (const BenchLevel& level : levels) total += level.size();
-  Stage stage(axis ? axis->name : "runs", int(total), nullptr, progress);
+  Stage stage(axis ? axis->name : "runs", {nullptr, progress}, int(total));
   size_t done = 0;
   for (const BenchLevel& level : levels) {
     const bool works = run_level(run, level, measurer, rows, &stage, progress);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/stages/options.h"
+#include "pipelines/options/common_options.h"
 
 namespace sketchsplat {
 

@@ -44,7 +44,7 @@ bool lies_in(const fs::path& path, const std::vector<std::string>& folders, cons
 }
 
 Photographs list_photographs(const std::string& folder, const std::vector<std::string>& others,
-                             RunReport* report, Progress* progress) {
+                             const RunLog& log) {
   std::error_code none;
   if (!fs::is_directory(folder, none))
     throw InputError(folder, "a folder of photographs",
@@ -60,7 +60,7 @@ Photographs list_photographs(const std::string& folder, const std::vector<std::s
     try {
       size = read_image_size(path.string());
     } catch (const InputError& e) {
-      warn("photograph " + name + " is left out: " + e.what(), report, progress);
+      log.warn("photograph " + name + " is left out: " + e.what());
       continue;
     }
     if (!first) first = size;
@@ -223,9 +223,9 @@ std::vector<std::pair<std::string, std::string>> choose_pairs(
   return out;
 }
 
-void match(const Photographs& photographs, Colmap* colmap, RunReport* report, Progress* progress) {
+void match(const Photographs& photographs, Colmap* colmap, const RunLog& log) {
   const int n = int(photographs.names.size());
-  Stage stage("colmap matches", 0, report, progress);
+  Stage stage("colmap matches", log);
   // A list of pairs has blanks between its names.
   const bool blanks = std::any_of(
       photographs.names.begin(), photographs.names.end(),
@@ -243,13 +243,13 @@ void match(const Photographs& photographs, Colmap* colmap, RunReport* report, Pr
 }  // namespace
 
 void find_cameras(const std::string& images, const std::vector<std::string>& others,
-                  const std::string& folder, int threads, RunReport* report, Progress* progress) {
-  const Photographs photographs = list_photographs(images, others, report, progress);
+                  const std::string& folder, int threads, const RunLog& log) {
+  const Photographs photographs = list_photographs(images, others, log);
   prepare_output_folder(folder);
   make_link(photographs.folder, folder + "/images");
   const std::string list = folder + "/photographs.txt";
   if (text_of(list) == photographs.list && has_model(folder)) {
-    if (progress) progress->note("cameras of an earlier run are used: " + folder + "/sparse");
+    log.note("cameras of an earlier run are used: " + folder + "/sparse");
     return;
   }
   std::error_code ignored;
@@ -257,12 +257,12 @@ void find_cameras(const std::string& images, const std::vector<std::string>& oth
     fs::remove_all(fs::path(folder) / old, ignored);
   Colmap colmap(folder, threads);
   {
-    Stage stage("colmap features", int(photographs.names.size()), report, progress);
+    Stage stage("colmap features", log, int(photographs.names.size()));
     colmap.extract(photographs, &stage);
   }
-  match(photographs, &colmap, report, progress);
+  match(photographs, &colmap, log);
   {
-    Stage stage("colmap cameras", int(photographs.names.size()), report, progress);
+    Stage stage("colmap cameras", log, int(photographs.names.size()));
     colmap.map(photographs, &stage);
     if (!has_model(folder))
       throw TooLittleError(

@@ -16,6 +16,6 @@ namespace sketchsplat {
 /// there or stops, or there are fewer than three photographs; TooLittleError if it finds no
 /// cameras; OutputError.
 void find_cameras(const std::string& images, const std::vector<std::string>& others,
-                  const std::string& folder, int threads, RunReport* report, Progress* progress);
+                  const std::string& folder, int threads, const RunLog& log);
 
 }  // namespace sketchsplat

@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "datasets/types/errors.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/options/derived_options.h"
 #include "pipelines/survey/round_judge.h"
-#include "pipelines/survey/select.h"
 
 namespace sketchsplat {
 namespace {
@@ -24,17 +23,18 @@ std::vector<char> rounds_among(const Sketch& sketch, const EdgeWorld& world,
 
 }  // namespace
 
-void find_strokes(const ReconstructOptions& options, Progress* progress, Posed* posed) {
-  posed->report = {};
-  posed->round.clear();
-  try {
-    FirstStrokes first = fit_strokes(lift_scene(posed->world, options, &posed->report, progress),
-                                     posed->world, options, &posed->report, progress);
-    posed->sketch = std::move(first.sketch), posed->nats = first.nats;
-    posed->round = rounds_among(posed->sketch, posed->world, select_options(options).round);
-  } catch (const TooLittleError&) {
-    posed->sketch = {}, posed->nats = 0;
-  }
+Refit refit_by(const StrokeFit& fit, const Run& run) {
+  return [fit, run](Posed* posed) {
+    posed->report = {};
+    posed->round.clear();
+    try {
+      FirstStrokes first = fit(posed->world, {run.options, {&posed->report, run.log.progress}});
+      posed->sketch = std::move(first.sketch), posed->nats = first.nats, posed->odds = first.odds;
+      posed->round = rounds_among(posed->sketch, posed->world, select_options(run.options).round);
+    } catch (const TooLittleError&) {
+      posed->sketch = {}, posed->nats = 0;
+    }
+  };
 }
 
 Observation look(const Posed& posed, double reach_px) {

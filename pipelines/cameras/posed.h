@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "edges/views/lift.h"
 #include "pipelines/base/run_report.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/run.h"
 #include "pipelines/survey/observe.h"
+#include "pipelines/survey/prior_odds.h"
 #include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
@@ -14,17 +16,31 @@ namespace sketchsplat {
 /// [px] How far beside strokes edgels tell of cameras that may err.
 constexpr double kCameraReachPx = 2;
 
+/// The first strokes of a world.
+struct FirstStrokes {
+  Sketch sketch;
+  double nats = 0;  ///< sum of the likelihood ratios [nat] by which they were chosen (select.h)
+  PriorOdds odds;   ///< as all strokes had them that they were chosen from
+};
+
+/// Lifts edgels and fits strokes by the cameras as they are. Throws TooLittleError if views agree
+/// on nothing.
+using StrokeFit = std::function<FirstStrokes(const EdgeWorld& world, const Run& run)>;
+
 /// First strokes by cameras that may err.
 struct Posed {
   EdgeWorld world;
   Sketch sketch = {};
   double nats = 0;               ///< that the views say for the strokes, see FirstStrokes
+  PriorOdds odds = {};           ///< see FirstStrokes
   std::vector<char> round = {};  ///< per stroke: hardly an edge, and no witness of cameras
   RunReport report = {};         ///< of how the strokes were found, alone
 };
 
-/// Lifts and fits strokes anew, in the world as it is; none if views agree on nothing.
-void find_strokes(const ReconstructOptions& options, Progress* progress, Posed* posed);
+/// Fits strokes anew, in the world as it is; none if views agree on nothing.
+using Refit = std::function<void(Posed*)>;
+/// By this fit; `log` is told of it, but for what belongs into the report, which is the posed's.
+Refit refit_by(const StrokeFit& fit, const Run& run);
 
 /// What views show of the strokes that are not round: where lines of sight touch a round moves with
 /// the view as if cameras erred.

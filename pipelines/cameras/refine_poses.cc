@@ -13,8 +13,8 @@
 #include "pipelines/cameras/camera_fit.h"
 #include "pipelines/cameras/misfit.h"
 #include "pipelines/cameras/point_prior.h"
-#include "pipelines/cameras/posed.h"
 #include "pipelines/cameras/settle.h"
+#include "pipelines/options/options.h"
 #include "pipelines/survey/explained.h"
 
 namespace sketchsplat {
@@ -47,10 +47,9 @@ struct Agreement {
 };
 
 // Of strokes by cameras that are not these views'.
-Agreement accidents(const EdgeWorld& world, std::vector<View> views,
-                    const ReconstructOptions& options) {
+Agreement accidents(const EdgeWorld& world, std::vector<View> views, const Refit& refit) {
   Posed posed{recast(world, std::move(views))};
-  find_strokes(options, nullptr, &posed);
+  refit(&posed);
   return {explained(posed.sketch, posed.world).share, posed.nats};
 }
 
@@ -77,10 +76,10 @@ std::vector<View> shuffled_views(const std::vector<View>& views) {
 }
 
 // That strokes are more than accidents, which are few as well.
-void check_agreement(const Posed& posed, double share, const ReconstructOptions& options) {
+void check_agreement(const Posed& posed, double share, const Refit& refit) {
   if (!(share < kLowShare) || stands_among_things(posed.world)) return;
-  const Agreement awry = accidents(posed.world, awry_views(posed.world.views), options);
-  const Agreement shuffled = accidents(posed.world, shuffled_views(posed.world.views), options);
+  const Agreement awry = accidents(posed.world, awry_views(posed.world.views), refit);
+  const Agreement shuffled = accidents(posed.world, shuffled_views(posed.world.views), refit);
   const double by_accident = std::max(awry.share, shuffled.share);
   if (share > std::max(kTimesChance * by_accident, kFewEdgels) ||
       posed.nats > std::max(kTimesChance * std::max(awry.nats, shuffled.nats), kFewNats))
@@ -96,15 +95,15 @@ void check_agreement(const Posed& posed, double share, const ReconstructOptions&
 }
 
 // Names the views that do not fit; false if there are none.
-bool leave_out(const Explained& shares, RunReport* report, Progress* progress, Posed* posed) {
+bool leave_out(const Explained& shares, const RunLog& log, Posed* posed) {
   const std::vector<char> leave = unfit_views(shares);
   const auto count = std::count(leave.begin(), leave.end(), 1);
   if (count == 0 || int(leave.size()) - int(count) < kFewestViews) return false;
   std::string names;
   for (size_t v = 0; v < leave.size(); ++v)
     if (leave[v]) names += (names.empty() ? "" : ", ") + posed->world.views[v].name;
-  warn("left out, for their poses do not fit the other views: " + names, report, progress);
-  report->counts.push_back({"views_left_out", double(count)});
+  log.warn("left out, for their poses do not fit the other views: " + names);
+  log.count("views_left_out", double(count));
   posed->world = refreshed(without_views(posed->world, leave));
   return true;
 }
@@ -117,8 +116,8 @@ void append(const RunReport& from, RunReport* to) {
 
 // How far the cameras are off.
 Misfit check_cameras(const Posed& posed, const StatedCameras& stated, double share,
-                     RunReport* report, Progress* progress) {
-  Stage stage("cameras", 0, report, progress);
+                     const RunLog& log) {
+  Stage stage("cameras", log);
   const Misfit off = misfit(posed, stated);
   char text[160];
   std::snprintf(text, sizeof text,
@@ -148,54 +147,56 @@ bool proves_cameras(const Posed& before, const Posed& after) {
 }
 
 // Cameras that fit, where these ones do not and others explain more; true if they moved.
-bool move_cameras(const StatedCameras& stated, const Misfit& off, const ReconstructOptions& options,
-                  RunReport* report, Progress* progress, Posed* posed) {
+bool move_cameras(const StatedCameras& stated, const Misfit& off, const Refit& refit,
+                  const Run& run, Posed* posed) {
   const Posed first = *posed;
-  Stage stage("poses", 0, report, progress);
-  const double after = settle_cameras(first, stated, off, options, progress, posed);
+  Stage stage("poses", run.log);
+  const double after = settle_cameras(first, stated, off, refit, posed);
   const bool things = stands_among_things(posed->world);
   const double least = (things ? 1 : off.confirmed() ? kNoWorse : kMuchBetter) * still_share(first);
   const bool better = still_share(*posed) > least && (things || proves_cameras(first, *posed));
-  const bool moved = options.refine_poses == "on" || better;
+  const bool moved = run.options.refine_poses == "on" || better;
   if (!moved) *posed = first;
-  report->counts.push_back({"pose_offset_before_px", off.offset_px});
-  report->counts.push_back({"pose_offset_after_px", moved ? after : off.offset_px});
-  if (moved) report->counts.push_back({"pose_scale_sigma", scale_sigma(*posed, stated, off)});
+  run.log.count("pose_offset_before_px", off.offset_px);
+  run.log.count("pose_offset_after_px", moved ? after : off.offset_px);
+  if (moved) run.log.count("pose_scale_sigma", scale_sigma(*posed, stated, off));
   stage.result(moved ? "cameras moved" : "stated cameras fit as well");
   return moved;
 }
 
 }  // namespace
 
-PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const ReconstructOptions& options,
-                          RunReport* report, Progress* progress) {
+PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const StrokeFit& fit,
+                          const Run& run) {
+  const Refit refit = refit_by(fit, run);
+  const std::string& how = run.options.refine_poses;
   Posed posed{std::move(world)};
   const StatedCameras stated = stated_cameras(posed.world, scene);
-  find_strokes(options, progress, &posed);
+  refit(&posed);
   Explained shares = explained(posed.sketch, posed.world);
-  const bool able = options.refine_poses != "off" && posed.world.views.size() >= kFewestViews &&
-                    options.detector != "2dgs-sn";
-  const Misfit off = able ? check_cameras(posed, stated, shares.share, report, progress) : Misfit{};
+  const bool able = how != "off" && posed.world.views.size() >= kFewestViews &&
+                    run.options.detector != "2dgs-sn";
+  const Misfit off = able ? check_cameras(posed, stated, shares.share, run.log) : Misfit{};
   const bool astray = (shares.share < kLeastShare || off.offset_px > kAstrayPx) &&
                       !stands_among_things(posed.world);
   // The cameras of structure from motion err; among things few strokes are left to confirm it.
   const bool doubtful =
       stands_among_things(posed.world) && points_off_px(stated.views, stated.points) > kPointsOffPx;
   bool moved = false;
-  if (able && (off.confirmed() || astray || doubtful || options.refine_poses == "on")) {
-    moved = move_cameras(stated, off, options, report, progress, &posed);
+  if (able && (off.confirmed() || astray || doubtful || how == "on")) {
+    moved = move_cameras(stated, off, refit, run, &posed);
     shares = explained(posed.sketch, posed.world);
   }
-  if (able && shares.share > 0 && leave_out(shares, report, progress, &posed)) {
+  if (able && shares.share > 0 && leave_out(shares, run.log, &posed)) {
     moved = true;
-    find_strokes(options, progress, &posed);
+    refit(&posed);
     shares = explained(posed.sketch, posed.world);
   }
-  check_agreement(posed, shares.share, options);
-  append(posed.report, report);
+  check_agreement(posed, shares.share, refit_by(fit, {run.options, {}}));
+  append(posed.report, run.log.report);
   if (posed.sketch.size() == 0)
     throw TooLittleError("expected edges that several views see, found none that agree");
-  return {std::move(posed.world), std::move(posed.sketch), moved};
+  return {std::move(posed.world), std::move(posed.sketch), posed.odds, moved};
 }
 
 }  // namespace sketchsplat

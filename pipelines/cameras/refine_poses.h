@@ -3,8 +3,7 @@
 
 #include "datasets/readers/scene.h"
 #include "edges/views/lift.h"
-#include "pipelines/base/run_report.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/cameras/posed.h"
 #include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
@@ -13,10 +12,11 @@ namespace sketchsplat {
 struct PosedStrokes {
   EdgeWorld world;
   Sketch sketch;
+  PriorOdds odds = {};   ///< see FirstStrokes
   bool refined = false;  ///< the cameras are not those that were stated, or fewer
 };
 
-/// Lifts the edgels and fits strokes; where the strokes' offsets in single views, or a focal length
+/// Fits strokes (`fit` lifts edgels and fits); where the strokes' offsets in single views, or a focal length
 /// or lens that fits them better, say that the cameras err (--refine-poses auto; always with "on",
 /// never with "off"; of an object among things without masks also if the scene's points lie beside
 /// their pixels), settles cameras and strokes together (settle.h) and keeps these cameras if as
@@ -24,7 +24,7 @@ struct PosedStrokes {
 /// with a warning. Without any of this nothing changes. Throws TooLittleError if views agree on
 /// hardly more than they would by accident.
 /// Points of structure from motion, if the scene has any, hold the cameras where they fit them.
-PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const ReconstructOptions& options,
-                          RunReport* report, Progress* progress);
+PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const StrokeFit& fit,
+                          const Run& run);
 
 }  // namespace sketchsplat

@@ -82,10 +82,9 @@ std::vector<View> enlarged(const std::vector<View>& coarse, std::vector<View> fi
 
 // The world by cameras that pictures of 1 / factor the size agree on.
 EdgeWorld coarse_to_fine(const EdgeWorld& world, int factor, const StatedCameras& stated,
-                         const ReconstructOptions& options, CameraPrior* prior,
-                         Progress* progress) {
+                         const Refit& refit, CameraPrior* prior) {
   Posed posed{coarser(world, factor)};
-  find_strokes(options, progress, &posed);
+  refit(&posed);
   const StatedCameras small = shrunk(stated, factor);
   const Misfit off = misfit(posed, {posed.world.views, small.points});
   if (off.rows == 0) return world;
@@ -109,7 +108,7 @@ bool shared_is_wrong(const Posed& posed, const StatedCameras& stated, CameraPrio
 
 // Moves cameras and strokes, and lifts again while that moves them; the offsets that are left.
 double settle(const StatedCameras& stated, const CameraPrior& prior,
-              const ReconstructOptions& options, Progress* progress, Posed* posed) {
+              const Refit& refit, Posed* posed) {
   for (int round = 0;; ++round) {
     const std::vector<View> before = posed->world.views;
     const Sketch lifted = posed->sketch;
@@ -121,37 +120,37 @@ double settle(const StatedCameras& stated, const CameraPrior& prior,
       posed->sketch = lifted;
       return after;
     }
-    find_strokes(options, progress, posed);
+    refit(posed);
     if (round == kMostLifts || moved < kMovedPx) return after;
   }
 }
 
 // Poses first; focal length, centre and lens if these do not do it.
 double refine_from(const StatedCameras& stated, CameraPrior prior,
-                   const ReconstructOptions& options, Progress* progress, Posed* posed) {
-  double after = settle(stated, prior, options, progress, posed);
+                   const Refit& refit, Posed* posed) {
+  double after = settle(stated, prior, refit, posed);
   for (int k = 0; k < kMostReturns && bring_back(posed->sketch, stated, prior, &posed->world);
        ++k) {
-    find_strokes(options, progress, posed);
-    after = settle(stated, prior, options, progress, posed);
+    refit(posed);
+    after = settle(stated, prior, refit, posed);
   }
   if (prior.shared || !shared_is_wrong(*posed, stated, prior)) return after;
   prior.shared = true;
-  return settle(stated, prior, options, progress, posed);
+  return settle(stated, prior, refit, posed);
 }
 
 // From where the cameras are, or, if strokes explain little then, from where smaller pictures say.
 double settle_best(const Posed& first, const StatedCameras& stated, const Misfit& off,
-                   const ReconstructOptions& options, Progress* progress, Posed* posed) {
+                   const Refit& refit, Posed* posed) {
   CameraPrior prior = prior_of(off);
-  const double after = refine_from(stated, prior, options, progress, posed);
+  const double after = refine_from(stated, prior, refit, posed);
   const double share = explained(posed->sketch, posed->world).share;
   if (!(share < kLowShare) || stands_among_things(first.world)) return after;
   Posed other = first;
   for (const int factor : {4, 2})
-    other.world = coarse_to_fine(other.world, factor, stated, options, &prior, progress);
-  find_strokes(options, progress, &other);
-  const double after_other = refine_from(stated, prior, options, progress, &other);
+    other.world = coarse_to_fine(other.world, factor, stated, refit, &prior);
+  refit(&other);
+  const double after_other = refine_from(stated, prior, refit, &other);
   if (!(explained(other.sketch, other.world).share > share)) return after;
   *posed = std::move(other);
   return after_other;
@@ -176,8 +175,8 @@ void hold_gauge(const StatedCameras& stated, Posed* posed) {
 }  // namespace
 
 double settle_cameras(const Posed& first, const StatedCameras& stated, const Misfit& off,
-                      const ReconstructOptions& options, Progress* progress, Posed* posed) {
-  const double after = settle_best(first, stated, off, options, progress, posed);
+                      const Refit& refit, Posed* posed) {
+  const double after = settle_best(first, stated, off, refit, posed);
   hold_gauge(stated, posed);
   return after;
 }

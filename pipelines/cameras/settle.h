@@ -4,7 +4,6 @@
 #include "pipelines/cameras/camera_fit.h"
 #include "pipelines/cameras/misfit.h"
 #include "pipelines/cameras/posed.h"
-#include "pipelines/stages/options.h"
 
 namespace sketchsplat {
 
@@ -13,9 +12,9 @@ namespace sketchsplat {
 /// these do not do it. Where strokes explain little even then, pictures of a quarter and a half of
 /// the size are tried first. All are moved at last to where points of structure from motion
 /// say, or else the stated cameras are likeliest (gauge.h). `off`: what the strokes say of the
-/// stated cameras. The offsets of strokes in views that are left [px].
+/// stated cameras; `refit`: lifts and fits. The offsets of strokes in views that are left [px].
 double settle_cameras(const Posed& first, const StatedCameras& stated, const Misfit& off,
-                      const ReconstructOptions& options, Progress* progress, Posed* posed);
+                      const Refit& refit, Posed* posed);
 
 /// Relative standard deviation of the size of what the moved cameras show.
 double scale_sigma(const Posed& posed, const StatedCameras& stated, const Misfit& off);

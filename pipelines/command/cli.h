@@ -8,7 +8,7 @@
 
 #include "pipelines/base/fields.h"
 #include "pipelines/base/progress.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/common_options.h"
 
 namespace sketchsplat {
 

@@ -80,11 +80,10 @@ std::unique_ptr<Detector> make_detector(const DetectionOptions& options) {
   return std::make_unique<ImageDetector>(options.detect);
 }
 
-std::vector<Detection> detect_all(const Scene& scene, Detector* detector, RunReport* report,
-                                  Progress* progress) {
+std::vector<Detection> detect_all(const Scene& scene, Detector* detector, const RunLog& log) {
   const int n = int(scene.views.size());
-  detector->prepare(scene, report, progress);
-  Stage stage("detect", n, report, progress);
+  detector->prepare(scene, log);
+  Stage stage("detect", log, n);
   std::vector<Detection> found(n);
   parallel_for(n, 1, [&](int i) {
     try {
@@ -100,7 +99,7 @@ std::vector<Detection> detect_all(const Scene& scene, Detector* detector, RunRep
     edgels += found[i].map.edgels.size();
     read += found[i].complaint.empty();
     if (!found[i].complaint.empty())
-      warn("view " + scene.views[i].name + " is left out: " + found[i].complaint, report, progress);
+      log.warn("view " + scene.views[i].name + " is left out: " + found[i].complaint);
   }
   if (read == 0) throw InputError(scene.folder, "a view that can be read", found[0].complaint);
   stage.result(std::to_string(edgels) + " edgels in " + std::to_string(read) + " views");

@@ -38,7 +38,7 @@ class Detector {
   virtual ~Detector() = default;
   /// Looks at the whole scene before the first view is asked for: where a detector that learns from
   /// all views does so. Called once. Throws InputError.
-  virtual void prepare(const Scene&, RunReport*, Progress*) {}
+  virtual void prepare(const Scene&, const RunLog&) {}
   /// Edgels of one view, in its ideal pixels. From many threads. Throws InputError, also if an
   /// image or map has another size than the view.
   virtual EdgelMap detect(const Scene& scene, const View& view) const = 0;
@@ -68,9 +68,7 @@ struct Detection {
 };
 
 /// Prepares the detector and asks it for all views of the scene, in their order; stage "detect". A
-/// view that cannot be read is left out with a warning. `report` and `progress` may be null. Throws
-/// InputError if no view can be read.
-std::vector<Detection> detect_all(const Scene& scene, Detector* detector, RunReport* report,
-                                  Progress* progress);
+/// view that cannot be read is left out with a warning. Throws InputError if no view can be read.
+std::vector<Detection> detect_all(const Scene& scene, Detector* detector, const RunLog& log);
 
 }  // namespace sketchsplat

@@ -44,9 +44,9 @@ class SurfelDetector : public Detector {
     options_.surfels.hull.seed = options_.surfels.cylinders.seed = options_.seed;
   }
 
-  void prepare(const Scene& scene, RunReport* report, Progress* progress) override {
-    fit_surfels(scene, report, progress);
-    look_at_surfels(report, progress);
+  void prepare(const Scene& scene, const RunLog& log) override {
+    fit_surfels(scene, log);
+    look_at_surfels(log);
   }
 
   EdgelMap detect(const Scene&, const View& view) const override {
@@ -80,20 +80,18 @@ class SurfelDetector : public Detector {
     return out;
   }
 
-  void fit_surfels(const Scene& scene, RunReport* report, Progress* progress) {
-    Stage stage("surfels", options_.surfels.renderings, report, progress);
+  void fit_surfels(const Scene& scene, const RunLog& log) {
+    Stage stage("surfels", log, options_.surfels.renderings);
     const std::vector<TrainingView> views = look(scene);
     field_ =
         train_surfels(views, world_.bounds, options_.surfels, sure(), [&stage] { stage.step(); });
     if (field_.surfels.size() == 0)
       throw TooLittleError(scene.folder + ": expected an object inside all masks, found nothing");
-    if (report) {
-      report->counts.push_back({"surfels", double(field_.surfels.size())});
-      report->counts.push_back({"surfel_edge_planes", double(field_.planes)});
-      report->counts.push_back({"surfel_cells_emptied", double(field_.emptied)});
-      report->counts.push_back({"surfel_renderings", double(field_.renderings)});
-      report->counts.push_back({"surfel_loss", field_.losses.back()});
-    }
+    log.count("surfels", field_.surfels.size());
+    log.count("surfel_edge_planes", field_.planes);
+    log.count("surfel_cells_emptied", field_.emptied);
+    log.count("surfel_renderings", field_.renderings);
+    log.count("surfel_loss", field_.losses.back());
     char text[300];
     std::snprintf(text, sizeof text,
                   "%d cells empty between %d planes of edges; "
@@ -106,9 +104,9 @@ class SurfelDetector : public Detector {
   }
 
   // What the surfels show in every view, and what the edges of the pictures are by that.
-  void look_at_surfels(RunReport* report, Progress* progress) {
+  void look_at_surfels(const RunLog& log) {
     const int n = int(world_.views.size());
-    Stage stage("surfel edges", n, report, progress);
+    Stage stage("surfel edges", log, n);
     maps_.resize(n), shape_.resize(n);
     for_each_view([&](int i) {
       const View& view = world_.views[i];

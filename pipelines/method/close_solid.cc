@@ -9,6 +9,8 @@
 
 #include "edges/views/unexplained.h"
 #include "pipelines/method/lacking_edges.h"
+#include "pipelines/options/options.h"
+#include "pipelines/survey/explained.h"
 #include "pipelines/survey/observe.h"
 #include "sketches/curve/curve.h"
 
@@ -95,13 +97,9 @@ void add_rays(const View& view, const Image<uint8_t>& mask, const EdgeWorld& wor
 // Every so many edgels of those that no stroke explains: as a rule, contours of round surfaces.
 // With masks, those of their outlines, which are nothing else.
 void add_contours(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* evidence) {
-  const SampleLayout layout = plan_samples(sketch, 2 * world.footprint);
-  const Samples samples = evaluate_samples(sketch, layout);
-  EdgelFlags explained = no_edgels(world);
-  explain(world, {samples.position, samples.tangent, layout.first}, {}, &explained);
-  const EdgeWorld rest = unexplained(world, explained, kLeastChain);
-  bool masked = false;
-  for (const EdgelMap& map : world.maps) masked |= map.mask.width > 0;
+  const EdgeWorld rest = unexplained(world, edgels_along(sketch, world), kLeastChain);
+  const bool masked = std::any_of(world.maps.begin(), world.maps.end(),
+                                  [](const EdgelMap& map) { return map.mask.width > 0; });
   size_t edgels = 0, passed = 0;
   for (const EdgelMap& map : rest.maps)
     for (const Edgel& e : map.edgels) edgels += e.outline || !masked;
@@ -116,8 +114,8 @@ void add_contours(const Sketch& sketch, const EdgeWorld& world, SolidEvidence* e
     }
 }
 
-}  // namespace
-
+// Which places of the strokes each view sees, rays through pixels well inside and well outside of
+// the masks, and lines of sight through edgels that no stroke explains.
 SolidEvidence solid_evidence(const Sketch& sketch, const EdgeWorld& world) {
   SolidEvidence evidence;
   add_sights(sketch, world, &evidence);
@@ -131,8 +129,6 @@ SolidEvidence solid_evidence(const Sketch& sketch, const EdgeWorld& world) {
   return evidence;
 }
 
-namespace {
-
 void refuse_if_edges_lack(const EdgeWorld& world, const Detector& detector, const LiftOptions& lift,
                           SolidSearch* search) {
   const LackingEdges lacking = lacking_edges(*search->solid, world, detector, lift);
@@ -145,13 +141,13 @@ void refuse_if_edges_lack(const EdgeWorld& world, const Detector& detector, cons
 }  // namespace
 
 SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
-                        const ReconstructOptions& options, RunReport* report, Progress* progress) {
+                        const Run& run) {
   SolidSearch search;
-  if (options.solid == "off") {
+  if (run.options.solid == "off") {
     search.why = "it was not asked for";
     return search;
   }
-  Stage stage("close solid", 0, report, progress);
+  Stage stage("close solid", run.log);
   try {
     SolidOptions how;
     const double extent = largest_extent(sketch);
@@ -160,7 +156,7 @@ SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world, const Dete
     const SolidEvidence evidence = solid_evidence(sketch, world);
     if (evidence.rays.empty()) how.margin *= kWithoutMasks;
     search = find_solid(sketch, how, evidence);
-    if (search.solid) refuse_if_edges_lack(world, detector, options.lift, &search);
+    if (search.solid) refuse_if_edges_lack(world, detector, run.options.lift, &search);
   } catch (const std::runtime_error& e) {
     search.why = e.what();
   }

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "pipelines/adjust/polish.h"
+#include "pipelines/options/derived_options.h"
 #include "sketches/curve/curve_chain.h"
 #include "topology/core/passes.h"
 #include "topology/solid/sharp_edges.h"
@@ -28,21 +28,6 @@ SharpEdges edges_of(const SolidSearch& found, const Sketch& sketch, const EdgeWo
                     const ReconstructOptions& options) {
   if (found.solid) return sharp_edges(found, options.inferred);
   return with_sure_edges(sketch, found, kReachPx * world.footprint);
-}
-
-// Relations between strokes, of which some went into others and some are gone.
-std::vector<Regularity> moved(std::vector<Regularity> kept, const std::vector<int>& now) {
-  for (Regularity& r : kept) {
-    std::vector<int> strokes;
-    for (const int s : r.strokes)
-      if (now[s] >= 0 && std::find(strokes.begin(), strokes.end(), now[s]) == strokes.end())
-        strokes.push_back(now[s]);
-    r.strokes = std::move(strokes);
-  }
-  kept.erase(std::remove_if(kept.begin(), kept.end(),
-                            [](const Regularity& r) { return r.strokes.size() < 2; }),
-             kept.end());
-  return kept;
 }
 
 // Pieces of one curve, as a stroke and the rest of it that was inferred, become one.
@@ -71,21 +56,21 @@ Sketch polished(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 }  // namespace
 
 FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, const EdgeWorld& world,
-                               const ReconstructOptions& options, RunReport* report,
-                               Progress* progress) {
+                               const Run& run) {
+  const ReconstructOptions& options = run.options;
   if (!found->solid && !(options.inferred && found->shell)) return finished;
-  Stage stage("complete", 0, report, progress);
+  Stage stage("complete", run.log);
   const SharpEdges edges = joined(edges_of(*found, finished.sketch, world, options), world);
   if (edges.sketch.size() == 0) return finished;
   finished.sketch = edges.bent ? polished(edges.sketch, world, options) : edges.sketch;
-  finished.kept = moved(std::move(finished.kept), edges.now);
+  finished.kept = renumbered(std::move(finished.kept), edges.now);
   rename_doubtful(edges.now, found);
   std::vector<double> implied;
   for (const bool inferred : edges.inferred)
     implied.push_back(inferred ? implied_probability(*found) : 0);
   judge_strokes(world, options, implied, &finished);
   const auto count = std::count(edges.inferred.begin(), edges.inferred.end(), true);
-  report->counts.push_back({"strokes_inferred", double(count)});
+  run.log.count("strokes_inferred", double(count));
   stage.result(std::to_string(count) + " edges inferred");
   return finished;
 }

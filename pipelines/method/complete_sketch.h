@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "pipelines/stages/stages.h"
+#include "pipelines/method/finish.h"
 #include "topology/solid/find_solid.h"
 
 namespace sketchsplat {
@@ -10,10 +10,9 @@ namespace sketchsplat {
 /// added (unless the options are against it), strokes that were one edge seen twice, or pieces of
 /// one, are one. As given if there is no solid. Doubtful strokes of `found` are renamed.
 FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, const EdgeWorld& world,
-                               const ReconstructOptions& options, RunReport* report,
-                               Progress* progress);
+                               const Run& run);
 
-/// Doubtful strokes by what they are called `now`, -1 for those that are gone.
+/// Doubtful strokes by their new indices, -1 for those that are gone.
 void rename_doubtful(const std::vector<int>& now, SolidSearch* found);
 
 }  // namespace sketchsplat

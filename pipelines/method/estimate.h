@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipelines/base/schedule.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
 
 namespace sketchsplat {
 

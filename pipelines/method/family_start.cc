@@ -10,7 +10,8 @@
 #include "datasets/types/errors.h"
 #include "pipelines/base/sketch_input.h"
 #include "pipelines/method/family_fit.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/options/derived_options.h"
+#include "pipelines/survey/select.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/sample.h"
 
@@ -101,18 +102,18 @@ Freed set_free(const Sketch& fitted, const EdgeWorld& world, const ReconstructOp
 
 }  // namespace
 
-FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,
-                                RunReport* report, Progress* progress) {
+FamilyStart start_from_siblings(const EdgeWorld& world, const Run& run) {
+  const ReconstructOptions& options = run.options;
   if (options.like.empty()) return {};
-  Stage stage("family", 0, report, progress);
+  Stage stage("family", run.log);
   const Family family = learn_family(read_siblings(options.like, options.like_folder));
   const FamilyFit fit(family, world, kFitViews);
   const Best best = best_fit(fit);
-  report->counts.push_back({"family_siblings", double(family.siblings)});
-  report->counts.push_back({"family_numbers", double(family.mean.size())});
-  report->counts.push_back({"family_edgels_fitted", best.explained});
+  run.log.count("family_siblings", double(family.siblings));
+  run.log.count("family_numbers", double(family.mean.size()));
+  run.log.count("family_edgels_fitted", best.explained);
   if (best.explained < kPromising) {
-    report->counts.push_back({"family_followed", 0});
+    run.log.count("family_followed", 0);
     stage.result("no sibling: " + std::to_string(std::lround(100 * best.explained)) +
                  " % of the edgels");
     return {};
@@ -129,19 +130,19 @@ FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions
     length += l;
     if (chosen.nats[s] > select.prior[s]) seen += l;
     start.all_free = start.all_free && (freed.free[s] || chosen.verdicts[s] != Verdict::kKept);
-    if (!progress) continue;
+    if (!run.log.progress) continue;
     char line[200];
     std::snprintf(line, sizeof line, "%s %d is %s, %s: %.0f px, %d views, moves %.2f px, %.1f nat",
                   kind_name(sketch.strokes[s].kind), s, verdict_name(chosen.verdicts[s]),
                   freed.free[s] ? "free" : "held", chosen.stats[s].length_px, chosen.stats[s].views,
                   chosen.stats[s].bias_px, chosen.nats[s]);
-    progress->note(line);
+    run.log.note(line);
   }
   const double explained = fit.explained(chosen.sketch);
   const bool is_sibling = explained >= kExplained && seen >= kSeen * length;
-  report->counts.push_back({"family_edgels_explained", explained});
-  report->counts.push_back({"family_length_seen", length > 0 ? seen / length : 0});
-  report->counts.push_back({"family_followed", double(is_sibling)});
+  run.log.count("family_edgels_explained", explained);
+  run.log.count("family_length_seen", length > 0 ? seen / length : 0);
+  run.log.count("family_followed", double(is_sibling));
   char said[120];
   std::snprintf(said, sizeof said, "%s: %.0f %% of the edgels, %d of %d strokes",
                 is_sibling ? "a sibling" : "no sibling", 100 * explained, chosen.sketch.size(),

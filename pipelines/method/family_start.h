@@ -2,8 +2,8 @@
 #pragma once
 
 #include "edges/views/lift.h"
-#include "pipelines/base/run_report.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
+#include "pipelines/options/run.h"
 #include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
@@ -18,8 +18,7 @@ struct FamilyStart {
 /// counts in its favour. Strokes that fewer than options.select.sure_views views see stay with the
 /// family. The part is none of it, and the report says so, if too many of its edgels lie on no
 /// stroke, or too many strokes on no edgels. Throws InputError.
-FamilyStart start_from_siblings(const EdgeWorld& world, const ReconstructOptions& options,
-                                RunReport* report, Progress* progress);
+FamilyStart start_from_siblings(const EdgeWorld& world, const Run& run);
 
 /// The options for what follows: what siblings know needs no rounds, and what no view sees no
 /// polish. What siblings lack and few views show is rather an accident.

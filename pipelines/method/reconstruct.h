@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
+// In: a scene and options. Out: its edges as curves, the solid that they bound, and a report of the
+// run. This folder may not include files that are written (results, pages) or command lines.
 #pragma once
 
 #include "datasets/readers/scene.h"
 #include "edges/tags/tag_square.h"
 #include "pipelines/base/run_report.h"
-#include "pipelines/stages/blends.h"
-#include "pipelines/stages/options.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/detectors/detectors.h"
+#include "pipelines/method/blends.h"
+#include "pipelines/options/options.h"
 #include "sketches/graph/sketch.h"
 #include "topology/solid/find_solid.h"
 

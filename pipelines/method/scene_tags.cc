@@ -9,9 +9,9 @@
 
 namespace sketchsplat {
 
-std::vector<TagSquare> measure_tags(const Scene& scene, RunReport* report, Progress* progress) {
+std::vector<TagSquare> measure_tags(const Scene& scene, const RunLog& log) {
   const int n = int(scene.views.size());
-  Stage stage("tags", n, report, progress);
+  Stage stage("tags", log, n);
   std::vector<std::vector<TagPatch>> found(n);
   parallel_for(n, 1, [&](int v) {
     try {

@@ -10,8 +10,7 @@
 namespace sketchsplat {
 
 /// The AprilTags 36h11 of a scene, ascending by id; stage "tags". Pictures that cannot be read do
-/// not count. `report` and `progress` may be null. Throws TooLittleError if not one can be
-/// measured.
-std::vector<TagSquare> measure_tags(const Scene& scene, RunReport* report, Progress* progress);
+/// not count. Throws TooLittleError if not one can be measured.
+std::vector<TagSquare> measure_tags(const Scene& scene, const RunLog& log);
 
 }  // namespace sketchsplat

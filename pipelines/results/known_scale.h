@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "edges/tags/tag_square.h"
-#include "pipelines/stages/options.h"
-#include "pipelines/stages/scale_reference.h"
+#include "pipelines/options/output_options.h"
+#include "pipelines/options/scale_reference.h"
 #include "sketches/graph/sketch.h"
 
 namespace sketchsplat {

@@ -25,22 +25,22 @@ namespace {
 constexpr double kObjDeflection = 1e-4;  // of the extent
 
 // The picture under an overlay; white if it cannot be read any more.
-Picture background(const View& view, RunReport* report, Progress* progress) {
+Picture background(const View& view, const RunLog& log) {
   try {
     return read_picture(view.image_path);
   } catch (const InputError& e) {
-    warn(e.what(), report, progress);
+    log.warn(e.what());
     return {};
   }
 }
 
 // Returns how many.
 int write_overlays(const std::string& folder, const Sketch& sketch, const Scene& scene, int count,
-                   RunReport* report, Progress* progress) {
+                   const RunLog& log) {
   int written = 0;
   for (const int v : spread_views(scene.views, sketch_extent(sketch).center, count)) {
     const View& view = scene.views[v];
-    const Picture overlay = draw_overlay(sketch, view, background(view, report, progress));
+    const Picture overlay = draw_overlay(sketch, view, background(view, log));
     write_png(folder + "/overlay_" + fs::path(view.name).stem().string() + ".png", overlay);
     ++written;
   }
@@ -164,7 +164,7 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
 
 // What was asked for and cannot be had is a warning: the curves are worth something without.
 KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& options,
-                    RunReport* report, Progress* progress) {
+                    const RunLog& log) {
   // As its file counts curves and nodes.
   std::stringstream file;
   write_sketch_json(file, reconstruction.sketch);
@@ -172,7 +172,7 @@ KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& opti
   try {
     return known_scale(options, sketch, footprint_of(reconstruction), reconstruction.tags);
   } catch (const InputError& e) {
-    warn(std::string(e.what()) + ": all lengths stay in world units", report, progress);
+    log.warn(std::string(e.what()) + ": all lengths stay in world units");
     KnownScale none;
     none.unit = options.unit;
     return none;
@@ -205,19 +205,19 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
   KnownScale scale;
   SolidOutcome solid;
   {
-    Stage stage("write", 0, &reconstruction.report, progress);
-    scale = scale_of(reconstruction, output_options.cad, &reconstruction.report, progress);
+    const RunLog log{&reconstruction.report, progress};
+    Stage stage("write", log);
+    scale = scale_of(reconstruction, output_options.cad, log);
     write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
     solid = write_solid(folder, reconstruction.solid,
                         solid_options(reconstruction, scene, scale, output_options));
     if (solid.shell_asked && !solid.shell_written)
-      warn("no shell is written: " + solid.why_no_shell, &reconstruction.report, progress);
+      log.warn("no shell is written: " + solid.why_no_shell);
     write_cameras(folder + "/cameras", reconstruction.refined);
     remove_old_overlays(folder);
     Scene seen = scene;
     if (!reconstruction.refined.empty()) seen.views = reconstruction.refined;
-    const int overlays = write_overlays(folder, sketch, seen, output_options.overlays,
-                                        &reconstruction.report, progress);
+    const int overlays = write_overlays(folder, sketch, seen, output_options.overlays, log);
     page.viewpoints = viewpoints(reconstruction, seen);
     if (overlays > 0) page.photos = album.photos(seen.views);
     stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +

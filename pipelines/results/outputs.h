@@ -6,7 +6,8 @@
 #include "pipelines/method/reconstruct.h"
 #include "pipelines/pages/page_photos.h"
 #include "pipelines/results/known_scale.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
+#include "pipelines/options/output_options.h"
 #include "sketches/io/io.h"
 
 namespace sketchsplat {

@@ -2,6 +2,7 @@
 #include "pipelines/survey/explained.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "datasets/types/median.h"
 #include "pipelines/survey/observe.h"
@@ -35,6 +36,19 @@ std::vector<double> edgels_on_strokes(const EdgeWorld& world, const Observation&
 }
 
 }  // namespace
+
+CurvePoints points_on(const Sketch& sketch, double spacing) {
+  const SampleLayout layout = plan_samples(sketch, spacing);
+  Samples samples = evaluate_samples(sketch, layout);
+  return {std::move(samples.position), std::move(samples.tangent), layout.first};
+}
+
+EdgelFlags edgels_along(const Sketch& sketch, const EdgeWorld& world) {
+  constexpr double kClosePx = 2;  // as explain() needs them
+  EdgelFlags along = no_edgels(world);
+  explain(world, points_on(sketch, kClosePx * world.footprint), {}, &along);
+  return along;
+}
 
 Explained explained(const Sketch& sketch, const EdgeWorld& world, double reach_px) {
   const int n = int(world.views.size());

@@ -4,9 +4,17 @@
 #include <vector>
 
 #include "edges/views/lift.h"
+#include "edges/views/match.h"
+#include "edges/views/unexplained.h"
 #include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
+
+/// Places along the strokes, a curve for each, at most `spacing` [world units] apart.
+CurvePoints points_on(const Sketch& sketch, double spacing);
+
+/// Flags the edgels along the strokes in every view, be they seen there or not (explain()).
+EdgelFlags edgels_along(const Sketch& sketch, const EdgeWorld& world);
 
 /// How much of the images strokes explain.
 struct Explained {

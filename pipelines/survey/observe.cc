@@ -54,6 +54,11 @@ Measured measure(const Observation& o, int stroke, double footprint) {
   return out;
 }
 
+CurvePoints points_of(const Observation& o, int stroke) {
+  const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
+  return {o.samples.position.middleCols(first, n), o.samples.tangent.middleCols(first, n), {0, n}};
+}
+
 Observation without_strokes(Observation o, const std::vector<char>& leave) {
   Matches kept;
   kept.sigma_px = o.matches.sigma_px;

@@ -38,6 +38,8 @@ struct StrokeObservation : Observation {
 /// Samples every `spacing_px` footprints.
 Observation observe(const Sketch& sketch, const EdgeWorld& world, const MatchOptions& options,
                     double spacing_px);
+/// The samples of one stroke.
+CurvePoints points_of(const Observation& observation, int stroke);
 /// Without the matches of strokes that are marked (one per stroke), and without quadratics.
 Observation without_strokes(Observation observation, const std::vector<char>& leave);
 /// `min_views` views make a sample covered.

@@ -59,11 +59,6 @@ double own_cover(const Observation& o, int stroke, int min_views, const EdgelFla
   return double(covered) / std::max(1, o.layout.first[stroke + 1] - o.layout.first[stroke]);
 }
 
-CurvePoints points_of(const Observation& o, int stroke) {
-  const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
-  return {o.samples.position.middleCols(first, n), o.samples.tangent.middleCols(first, n), {0, n}};
-}
-
 // Which strokes are rims of round surfaces; flags what the rims explain in all views.
 std::vector<char> explain_rims(const StrokeObservation& o, const EdgeWorld& world,
                                const SelectOptions& options, EdgelFlags* explained) {

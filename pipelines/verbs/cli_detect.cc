@@ -176,7 +176,7 @@ void run_detect(DetectArguments arguments, const CommonOptions& common, Progress
   prepare_output_folder(map_folder(arguments));
   const std::unique_ptr<Detector> detector = make_detector(arguments.detection);
   if (arguments.geometry) prepare_geometry_folders(arguments.out);
-  const std::vector<Detection> found = detect_all(scene, detector.get(), nullptr, progress);
+  const std::vector<Detection> found = detect_all(scene, detector.get(), {nullptr, progress});
   const std::vector<ViewScore> scores = write_maps(scene, *detector, found, arguments);
   const std::string surfels = detector->surfels();
   if (arguments.geometry && !surfels.empty())

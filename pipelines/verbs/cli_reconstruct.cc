@@ -87,7 +87,7 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
   const int missing = missing_maps(scene, arguments.method.detector);
   KnownScale scale;
   if (arguments.method.tags && !photographs)
-    scale = known_scale(arguments.output.cad, {}, 0, measure_tags(scene, nullptr, progress));
+    scale = known_scale(arguments.output.cad, {}, 0, measure_tags(scene, {nullptr, progress}));
   if (json) {
     const Json size = scale.source.empty() ? Json() : parse_json<Json>(scale_json(scale));
     print_json({{"scale", size},
@@ -130,7 +130,7 @@ void tell_result(const Sketch& sketch, const KnownScale& scale,
 
 // The scene, or the photographs with the cameras that COLMAP finds.
 Scene open_views(const ReconstructArguments& arguments, const CommonOptions& common,
-                 RunReport* report, Progress* progress) {
+                 const RunLog& log) {
   Scene scene;
   if (arguments.images.empty()) {
     scene = open_scene(arguments.scene, arguments.open);
@@ -140,13 +140,12 @@ Scene open_views(const ReconstructArguments& arguments, const CommonOptions& com
     if (std::filesystem::equivalent(arguments.images, arguments.out, none))
       throw UsageError("--out must be another folder than --images: it gets pictures, too");
     const std::string folder = arguments.out + "/colmap";
-    find_cameras(arguments.images, {arguments.out, arguments.masks}, folder, common.threads, report,
-                 progress);
+    find_cameras(arguments.images, {arguments.out, arguments.masks}, folder, common.threads, log);
     scene = open_scene(folder, "colmap");
     scene.folder = arguments.images;  // that is how users and files call it
   }
   if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
-  for (const std::string& warning : scene.warnings) progress->warn(warning);
+  for (const std::string& warning : scene.warnings) log.progress->warn(warning);
   return scene;
 }
 
@@ -158,13 +157,13 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   if (!arguments.scene.empty() && !arguments.images.empty())
     throw UsageError("reconstruct takes SCENE or --images DIR, not both");
   if (arguments.dry_run) {
-    tell_plan(arguments.images.empty() ? open_views(arguments, common, nullptr, progress)
+    tell_plan(arguments.images.empty() ? open_views(arguments, common, {nullptr, progress})
                                        : photographs_in(arguments.images),
               arguments, common.json, progress);
     return;
   }
   RunReport before;
-  const Scene scene = open_views(arguments, common, &before, progress);
+  const Scene scene = open_views(arguments, common, {&before, progress});
   prepare_output_folder(arguments.out);
   const PhotoAlbum album(scene, meeting_point(scene.views));
   Reconstruction result = reconstruct(arguments.output.overlays > 0 ? album.watched() : scene,

@@ -85,7 +85,7 @@ void run_synthesize(SynthesizeArguments arguments, const CommonOptions& common,
   const SyntheticScene& scene = *made;
   prepare_output_folder(arguments.out);
   {
-    Stage stage("render", 0, nullptr, progress);
+    Stage stage("render", {nullptr, progress});
     plugin.write_scene(scene, arguments.out);
     stage.result(std::to_string(scene.views.size()) + " views");
   }

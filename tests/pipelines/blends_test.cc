@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/stages/blends.h"
+#include "pipelines/method/blends.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,8 @@
 #include <set>
 
 #include "pipelines/command/cli_help.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
+#include "pipelines/options/output_options.h"
 
 namespace sketchsplat {
 namespace {

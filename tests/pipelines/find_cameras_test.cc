@@ -76,7 +76,7 @@ TEST_F(FindCameras, ColmapIsRunStepByStepAndItsModelIsAScene) {
   for (const char* name : {"a.png", "b.png", "more/c.png"}) photograph(name);
   std::ofstream(in("photos/notes.txt")) << "no photograph";
   RunReport report;
-  find_cameras(in("photos"), {}, in("colmap"), 3, &report, nullptr);
+  find_cameras(in("photos"), {}, in("colmap"), 3, {&report});
   const std::vector<std::string> lines = calls();
   ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[0], "offscreen feature_extractor --help");
@@ -104,15 +104,15 @@ TEST_F(FindCameras, ColmapIsRunStepByStepAndItsModelIsAScene) {
 TEST_F(FindCameras, TheModelIsUsedAgainUntilThePhotographsChange) {
   install(writes_a_model());
   for (const char* name : {"a.png", "b.png", "c.png"}) photograph(name);
-  find_cameras(in("photos"), {}, in("colmap"), 0, nullptr, nullptr);
+  find_cameras(in("photos"), {}, in("colmap"), 0, {});
   const size_t first = calls().size();
-  find_cameras(in("photos"), {}, in("colmap"), 0, nullptr, nullptr);
+  find_cameras(in("photos"), {}, in("colmap"), 0, {});
   EXPECT_EQ(calls().size(), first);
   photograph("d.png");
-  find_cameras(in("photos"), {}, in("colmap"), 0, nullptr, nullptr);
+  find_cameras(in("photos"), {}, in("colmap"), 0, {});
   EXPECT_EQ(calls().size(), 2 * first);
   photograph("b.png", 20);
-  find_cameras(in("photos"), {}, in("colmap"), 0, nullptr, nullptr);
+  find_cameras(in("photos"), {}, in("colmap"), 0, {});
   EXPECT_EQ(calls().size(), 3 * first);
   EXPECT_THAT(calls().at(2 * first + 1),
               AllOf(Not(HasSubstr("single_camera")), HasSubstr("camera_model SIMPLE_RADIAL")))
@@ -124,7 +124,7 @@ TEST_F(FindCameras, MasksAndResultsBelowThePhotographsAreNone) {
   for (const char* name : {"a.png", "b.png", "c.png", "masks/a.png", "out/overlay_a.png"})
     photograph(name);
   find_cameras(in("photos"), {in("photos/out"), in("photos/masks"), "", in("photos")},
-               in("photos/out/colmap"), 0, nullptr, nullptr);
+               in("photos/out/colmap"), 0, {});
   EXPECT_EQ(text_of_file(in("names")), "a.png\nb.png\nc.png\n");
   const Outcome o =
       run("reconstruct --images '" + in("photos") + "' --out '" + in("photos") + "/'");
@@ -135,7 +135,7 @@ TEST_F(FindCameras, MasksAndResultsBelowThePhotographsAreNone) {
 TEST_F(FindCameras, NewerVersionsNameTheirOptionsOtherwise) {
   install(writes_a_model(), "  --FeatureExtraction.use_gpu arg (=1)");
   for (const char* name : {"a.png", "b.png", "c.png"}) photograph(name);
-  find_cameras(in("photos"), {}, in("colmap"), 0, nullptr, nullptr);
+  find_cameras(in("photos"), {}, in("colmap"), 0, {});
   EXPECT_THAT(calls().at(1), HasSubstr("--FeatureExtraction.use_gpu 0"));
   EXPECT_THAT(calls().at(2), HasSubstr("--FeatureMatching.use_gpu 0"));
 }
@@ -143,7 +143,7 @@ TEST_F(FindCameras, NewerVersionsNameTheirOptionsOtherwise) {
 TEST_F(FindCameras, LargeSetsAreMatchedAlongTheCircleOfTheirNames) {
   install(writes_a_model());
   for (int i = 0; i < 100; ++i) photograph(std::to_string(100 + i) + ".png");
-  find_cameras(in("photos"), {}, in("colmap"), 0, nullptr, nullptr);
+  find_cameras(in("photos"), {}, in("colmap"), 0, {});
   EXPECT_THAT(calls().at(2), AllOf(HasSubstr(" matches_importer "), HasSubstr("--match_type pairs"),
                                    HasSubstr("--SiftMatching.use_gpu 0")));
   const std::string pairs = text_of_file(in("pairs"));

@@ -8,6 +8,8 @@
 #include <Eigen/LU>
 
 #include "pipelines/cameras/refine_poses.h"
+#include "pipelines/method/lift_and_fit.h"
+#include "pipelines/options/options.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {
@@ -191,9 +193,9 @@ TEST(PointPrior, PointsHoldCamerasThatAFewStrokesDoNot) {
   RunReport report;
   const EdgeWorld world = make_edge_world(scene.views, maps);
   const double before = misfit_px(scene.views, points);
-  const PosedStrokes alone = pose_and_fit(scene, world, options, &report, nullptr);
+  const PosedStrokes alone = pose_and_fit(scene, world, lift_and_fit, {options, {&report}});
   scene.points = points;
-  const PosedStrokes held = pose_and_fit(scene, world, options, &report, nullptr);
+  const PosedStrokes held = pose_and_fit(scene, world, lift_and_fit, {options, {&report}});
   ASSERT_TRUE(held.refined);
   EXPECT_LT(misfit_px(held.world.views, points), 0.15);
   EXPECT_GT(before, 0.8);

@@ -141,7 +141,7 @@ TEST(Progress, ColourIsForWarningsAndOnlyWhereItIsWanted) {
 TEST(Stage, RecordsNameResultAndCosts) {
   RunReport report;
   {
-    Stage stage("lift", 2, &report, nullptr);
+    Stage stage("lift", {&report}, 2);
     stage.step();
     stage.result("12 points");
   }
@@ -153,9 +153,9 @@ TEST(Stage, RecordsNameResultAndCosts) {
 }
 
 TEST(Stage, ReportAndProgressMayBeMissing) {
-  Stage stage("lift", 0, nullptr, nullptr);
+  Stage stage("lift", {});
   stage.step();
-  warn("nobody hears it", nullptr, nullptr);
+  RunLog().warn("nobody hears it");
 }
 
 }  // namespace

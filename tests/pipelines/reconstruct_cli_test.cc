@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
+#include "pipelines/options/output_options.h"
 #include "tests/pipelines/program.h"
 #include "tests/support/sanitizer.h"
 

@@ -7,7 +7,6 @@
 #include <omp.h>
 
 #include "datasets/types/errors.h"
-#include "pipelines/stages/stages.h"
 #include "sketches/curve/curve.h"
 #include "tests/pipelines/rendered_part.h"
 

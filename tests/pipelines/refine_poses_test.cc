@@ -13,6 +13,8 @@
 #include "datasets/types/errors.h"
 #include "datasets/types/median.h"
 #include "pipelines/cameras/camera_unknowns.h"
+#include "pipelines/method/lift_and_fit.h"
+#include "pipelines/options/options.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/house.h"
 #include "tests/support/strokes.h"
@@ -44,7 +46,8 @@ PosedStrokes posed(const std::vector<View>& stated, const std::vector<View>& tru
                    RunReport* report, const std::string& how = "auto") {
   ReconstructOptions options;
   options.refine_poses = how;
-  return pose_and_fit({}, make_edge_world(stated, house_edgels(truth)), options, report, nullptr);
+  return pose_and_fit({}, make_edge_world(stated, house_edgels(truth)), lift_and_fit,
+                      {options, {report}});
 }
 
 // Of sides and diagonals of what was found to what is true: largest distance after a shift, turn
@@ -174,7 +177,8 @@ TEST(RefinePoses, EdgesThatErrByThemselvesAreNoReasonToMoveExactCameras) {
     }
   const ReconstructOptions options;
   RunReport report;
-  EXPECT_FALSE(pose_and_fit({}, make_edge_world(views, maps), options, &report, nullptr).refined);
+  EXPECT_FALSE(
+      pose_and_fit({}, make_edge_world(views, maps), lift_and_fit, {options, {&report}}).refined);
 }
 
 TEST(RefinePoses, CamerasThatErrComeBack) {
@@ -222,7 +226,7 @@ bool tries_others_on_table(double off_px) {
   EdgeWorld world = make_edge_world(views, house_edgels(views));
   world.object.table.emplace(Vector3d::UnitZ(), -0.2);
   RunReport report;
-  pose_and_fit(scene, world, {}, &report, nullptr);
+  pose_and_fit(scene, world, lift_and_fit, {ReconstructOptions(), {&report}});
   return std::any_of(report.counts.begin(), report.counts.end(),
                      [](const auto& count) { return count.first == "pose_offset_after_px"; });
 }

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "datasets/types/errors.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/method/finish.h"
+#include "pipelines/options/options.h"
 #include "tests/pipelines/rounded_cube.h"
 
 namespace sketchsplat {

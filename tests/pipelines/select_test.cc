@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "pipelines/stages/stages.h"
+#include "pipelines/options/derived_options.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

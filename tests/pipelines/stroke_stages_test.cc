@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "pipelines/stages/stages.h"
+#include "pipelines/method/rounds.h"
+#include "pipelines/options/derived_options.h"
 #include "pipelines/survey/observe.h"
 #include "tests/support/strokes.h"
 
@@ -32,14 +33,15 @@ TEST(StrokeStages, ASecondLookFindsTheEdgesThatTheFirstOneLacks) {
   ReconstructOptions options;
   options.rounds = 0;
   RunReport report;
-  const Sketch all = look_again(cube_sketch(9), world, {}, options, &report, nullptr);
+  const Run run{options, {&report}};
+  const Sketch all = Rounds(world, {}, run).second_look(cube_sketch(9));
   ASSERT_EQ(all.size(), 12);
   const std::vector<Polyline> truth = cube_edges({0.2, 0.2, 0.2}, 0.6);
   for (int s = 9; s < 12; ++s)
     for (const double t : {0.2, 0.5, 0.8})
       EXPECT_LT(distance_to({truth.begin() + 9, truth.end()}, point_at(all, s, t)), 0.003);
   options.second_look = false;
-  EXPECT_EQ(look_again(cube_sketch(9), world, {}, options, &report, nullptr).size(), 9);
+  EXPECT_EQ(Rounds(world, {}, run).second_look(cube_sketch(9)).size(), 9);
 }
 
 TEST(StrokeStages, RegularitiesAreWeighedAsTheProductDescribes) {

@@ -10,7 +10,7 @@
 #include "datasets/types/geometry_maps.h"
 #include "eval/metrics/edge_maps.h"
 #include "eval/metrics/map_errors.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/method/leave_out.h"
 #include "tests/pipelines/rendered_part.h"
 #include "tests/support/strokes.h"
 
@@ -55,7 +55,7 @@ struct Worth {
 
 Worth worth(const Scene& scene, const DetectionOptions& options) {
   const std::unique_ptr<Detector> detector = make_detector(options);
-  const std::vector<Detection> found = detect_all(scene, detector.get(), nullptr, nullptr);
+  const std::vector<Detection> found = detect_all(scene, detector.get(), {});
   Worth sum;
   const double n = double(found.size());
   for (size_t v = 0; v < found.size(); ++v) {
@@ -137,7 +137,7 @@ TEST(SurfelDetector, GivesTheSameBytesForAnyNumberOfThreads) {
   for (const int threads : {1, 2}) {
     omp_set_num_threads(threads);
     const std::unique_ptr<Detector> detector = make_detector(small_options(40));
-    for (const Detection& d : detect_all(part.scene, detector.get(), nullptr, nullptr))
+    for (const Detection& d : detect_all(part.scene, detector.get(), {}))
       for (const Edgel& e : d.map.edgels)
         edges[threads / 2].insert(edges[threads / 2].end(), {e.x, e.y, e.nx, e.ny});
     bytes[threads / 2] = detector->surfels();
@@ -152,7 +152,7 @@ TEST(SurfelDetector, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(SurfelDetector, SaysWhatIsMissing) {
   const Rendered part(Style::kPlain, 4, 100);
   for (const View& v : part.scene.views) std::filesystem::remove(v.image_path);
-  EXPECT_THROW(make_detector(small_options(8))->prepare(part.scene, nullptr, nullptr), InputError);
+  EXPECT_THROW(make_detector(small_options(8))->prepare(part.scene, {}), InputError);
 }
 
 EdgelMap line_at(float y, int from, int to) {
@@ -224,14 +224,14 @@ TEST(DropPrint, StrokesGoOfWhichMostThatIsKnownIsPrint) {
   EdgeWorld world;
   world.footprint = 0.01;
   RunReport report;
-  const Sketch left = drop_print(sketch, world, Knowing(), &report, nullptr);
+  const Sketch left = drop_print(sketch, world, Knowing(), {&report});
   ASSERT_EQ(left.size(), 2);
   EXPECT_NEAR(test::point_at(left, 0, 0.5).y(), test::point_at(sketch, edge, 0.5).y(), 1e-9);
   EXPECT_NEAR(test::point_at(left, 1, 0.5).y(), test::point_at(sketch, unknown, 0.5).y(), 1e-9);
   ASSERT_EQ(report.counts.size(), 1u);
   EXPECT_EQ(report.counts[0].second, 1);
-  EXPECT_EQ(drop_print(left, world, Knowing(), &report, nullptr).size(), 2);
-  EXPECT_EQ(drop_print({}, world, Knowing(), &report, nullptr).size(), 0);
+  EXPECT_EQ(drop_print(left, world, Knowing(), {&report}).size(), 2);
+  EXPECT_EQ(drop_print({}, world, Knowing(), {&report}).size(), 0);
 }
 
 }  // namespace

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "datasets/types/errors.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/method/detect_object.h"
+#include "pipelines/method/finish.h"
+#include "pipelines/method/lift_and_fit.h"
+#include "pipelines/options/options.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {
@@ -37,7 +40,7 @@ TEST(WorldStages, AWorldWithMasksIsLeftAsItIs) {
   const EdgeWorld world = world_of(true);
   const ReconstructOptions options;
   RunReport report;
-  const EdgeWorld near = focus_on_object(world, options, &report, nullptr);
+  const EdgeWorld near = focus_on_object(world, {options, {&report}});
   EXPECT_EQ(edgels_of(near), edgels_of(world));
   EXPECT_TRUE(near.bounds.isApprox(world.bounds));
   EXPECT_TRUE(report.stages.empty()) << "nothing was looked for";
@@ -48,9 +51,9 @@ TEST(WorldStages, ABoxOfTheUserHoldsAllThatIsLifted) {
   ReconstructOptions options;
   options.box = Eigen::AlignedBox3d(Vector3d(0.05, 0.3, 0.3), Vector3d(0.45, 0.7, 0.7));
   RunReport report;
-  const EdgeWorld near = focus_on_object(world, options, &report, nullptr);
+  const EdgeWorld near = focus_on_object(world, {options, {&report}});
   EXPECT_LT(edgels_of(near), edgels_of(world));
-  const std::vector<EdgePoint> points = lift_scene(near, options, &report, nullptr);
+  const std::vector<EdgePoint> points = lift_scene(near, {options, {&report}});
   EXPECT_GT(points.size(), 200u);
   for (const EdgePoint& p : points) EXPECT_TRUE(options.box.contains(p.position));
   ASSERT_FALSE(report.counts.empty());
@@ -99,7 +102,7 @@ TEST(WorldStages, ASecondLookTellsHowFarAnObjectReaches) {
     if (std::abs(x - 0.5) > 0.8) print.curves.push_back({{x, -0.4, 0}, {x, 1.4, 0}});
   for (const double half : {0.18, 0.27, 0.36}) add_square(0.2, half, &steps);
   RunReport report;
-  const EdgeWorld near = focus_on_object(on_a_table({hub, print, steps}), {}, &report, nullptr);
+  const EdgeWorld near = focus_on_object(on_a_table({hub, print, steps}), {ReconstructOptions(), {&report}});
   ASSERT_TRUE(near.object.table);
   for (const double x : {0.14, 0.86})
     for (const double y : {0.14, 0.86}) EXPECT_TRUE(near.object.contains({x, y, 0.2})) << x << y;
@@ -115,10 +118,11 @@ TEST(WorldStages, CornersInPocketsDoNotMoveFarFromWhereTheRimHasThem) {
   sketch.add_stroke(StrokeKind::kLine, a, b, {});
   ReconstructOptions options;
   RunReport report;
-  const Sketch free = finish_sketch({sketch, {}, {}}, world, options, &report, nullptr).sketch;
+  const Run run{options, {&report}};
+  const Sketch free = polish_and_regularize({sketch, {}, {}}, world, run).sketch;
   EXPECT_NEAR(free.nodes(2, 0), corner.z(), 0.3 * world.footprint) << "it may slide along";
   const Sketch held =
-      finish_sketch({sketch, {stated}, {}}, world, options, &report, nullptr).sketch;
+      polish_and_regularize({sketch, {stated}, {}}, world, run).sketch;
   EXPECT_LT((held.nodes.col(0) - stated).norm(), 1e-12);
   EXPECT_LT((held.nodes.col(1) - free.nodes.col(1)).norm(), 1e-12) << "others are free";
 }
@@ -127,7 +131,7 @@ TEST(WorldStages, WhereNoViewsAgreeThereIsTooLittle) {
   EdgeWorld world = world_of(false);
   for (EdgelMap& map : world.maps) map = ideal_edgels(world.views[0], {});
   RunReport report;
-  EXPECT_THROW(lift_scene(world, {}, &report, nullptr), TooLittleError);
+  EXPECT_THROW(lift_scene(world, {ReconstructOptions(), {&report}}), TooLittleError);
 }
 
 }  // namespace

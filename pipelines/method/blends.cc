@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/stages/blends.h"
+#include "pipelines/method/blends.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "edges/views/unexplained.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/method/lift_and_fit.h"
+#include "pipelines/options/derived_options.h"
+#include "pipelines/survey/explained.h"
 #include "pipelines/survey/round_judge.h"
 #include "pipelines/survey/select.h"
-#include "sketches/curve/sample.h"
 
 namespace sketchsplat {
 namespace {
 
 constexpr double kMoves = 0.3;      // of its radius, by the outline of a blend of a right angle
-constexpr double kSpacingPx = 2;    // [px] of points that are compared
 constexpr double kBesidePx = 8;     // [px] of strokes on one round whose radius nobody knows
 constexpr double kSameShare = 0.5;  // of a stroke that lies on a blend that is known
-
-CurvePoints points_of(const Observation& o, int stroke) {
-  const int first = o.layout.first[stroke], n = o.layout.first[stroke + 1] - first;
-  return {o.samples.position.middleCols(first, n), o.samples.tangent.middleCols(first, n), {0, n}};
-}
 
 double share_within(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& of, double distance) {
   int near = 0;
@@ -39,14 +33,6 @@ Sketch round_strokes(const Sketch& sketch, const EdgeWorld& world,
   std::vector<bool> keep(both.size());
   for (int i = sketch.size(); i < both.size(); ++i) keep[i] = chosen.verdicts[i] == Verdict::kRound;
   return keep_strokes(both, keep);
-}
-
-EdgelFlags explained_by(const Sketch& sketch, const EdgeWorld& world) {
-  const SampleLayout layout = plan_samples(sketch, kSpacingPx * world.footprint);
-  const Samples samples = evaluate_samples(sketch, layout);
-  EdgelFlags explained = no_edgels(world);
-  explain(world, {samples.position, samples.tangent, layout.first}, {}, &explained);
-  return explained;
 }
 
 // Of strokes on one round, the first; wider ones than asked for are none.
@@ -80,7 +66,7 @@ Blends find_blends(const Sketch& sketch, const EdgeWorld& world,
   const Sketch rounds = round_strokes(sketch, world, options);
   Blends out;
   if (rounds.size() == 0) return out;
-  const EdgelFlags others = explained_by(sketch, world);
+  const EdgelFlags others = edgels_along(sketch, world);
   // The widths of edges are those of the sketch.
   Sketch all = rounds;
   append_strokes(sketch, &all);

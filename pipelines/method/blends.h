@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "edges/views/lift.h"
-#include "pipelines/stages/options.h"
+#include "pipelines/options/run.h"
 #include "sketches/graph/sketch.h"
 
 namespace sketchsplat {

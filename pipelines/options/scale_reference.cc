@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/stages/scale_reference.h"
+#include "pipelines/options/scale_reference.h"
 
 #include <algorithm>
 #include <cmath>

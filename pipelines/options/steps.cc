@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/stages/steps.h"
+#include "pipelines/options/steps.h"
 
 namespace sketchsplat {
 namespace {

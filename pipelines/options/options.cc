@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
 
 #include <cmath>
 #include <sstream>
 
-#include "pipelines/stages/scale_reference.h"
-#include "pipelines/stages/steps.h"
+#include "pipelines/options/common_options.h"
+#include "pipelines/options/output_options.h"
+#include "pipelines/options/scale_reference.h"
+#include "pipelines/options/steps.h"
 
 namespace sketchsplat {
 namespace {
@@ -259,10 +261,6 @@ void set_options(const OptionTexts& texts, ReconstructOptions* options) {
     assign(*field, text);
     if (field->applied) field->applied();
   }
-}
-
-Prices prices(const ReconstructOptions& options) {
-  return {options.segment.price, options.rechain.sigma_px};
 }
 
 }  // namespace sketchsplat

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The stages from images to points in space; stages.cc has those of strokes.
+#include "pipelines/method/detect_object.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,8 +11,7 @@
 #include "edges/views/focus.h"
 #include "edges/views/outlines.h"
 #include "edges/views/silhouettes.h"
-#include "pipelines/detectors/detectors.h"
-#include "pipelines/stages/stages.h"
+#include "pipelines/options/options.h"
 
 namespace sketchsplat {
 namespace {
@@ -23,16 +23,16 @@ constexpr int kCoarseViews = 16;    // that score their depths
 constexpr double kBeyond = 1.5;     // times what a view sees: bounds without masks
 constexpr double kAbout = 0.5;      // diagonals of the object's box that are looked at around it
 
-double most_edgels(const EdgelMap& map, const ReconstructOptions& options) {
-  const double sides = options.detect.meaning.most_sides;
+double most_edgels(const EdgelMap& map, const DetectOptions& options) {
+  const double sides = options.meaning.most_sides;
   return sides > 0 ? sides * std::sqrt(double(map.width) * map.height) : INFINITY;
 }
 
 }  // namespace
 
 EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
-                       const ReconstructOptions& options, RunReport* report, Progress* progress) {
-  std::vector<Detection> found = detect_all(scene, detector, report, progress);
+                       const Run& run) {
+  std::vector<Detection> found = detect_all(scene, detector, run.log);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
   size_t edgels = 0, with_edges = 0;
@@ -47,11 +47,11 @@ EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector
     throw TooLittleError(scene.folder + ": expected edges in at least " +
                          std::to_string(kFewestViews) + " views, found them in " +
                          std::to_string(with_edges));
-  report->counts.push_back({"views", double(views.size())});
-  report->counts.push_back({"edgels", double(edgels)});
-  Stage stage("hull", 0, report, progress);
+  run.log.count("views", double(views.size()));
+  run.log.count("edgels", double(edgels));
+  Stage stage("hull", run.log);
   for (EdgelMap& map : maps)
-    if (!map.mask.empty()) map = most_meaningful(map, most_edgels(map, options));
+    if (!map.mask.empty()) map = most_meaningful(map, most_edgels(map, run.options.detect));
   return make_edge_world(std::move(views), std::move(maps));
 }
 
@@ -68,15 +68,15 @@ ObjectRegion find_object_in(const EdgeWorld& coarse, const std::vector<EdgePoint
 
 }  // namespace
 
-EdgeWorld focus_on_object(EdgeWorld world, const ReconstructOptions& options, RunReport* report,
-                          Progress* progress) {
+EdgeWorld focus_on_object(EdgeWorld world, const Run& run) {
+  const ReconstructOptions& options = run.options;
   if (!options.box.isEmpty()) {
     ObjectRegion region;
     region.box = options.box;
     return focused(std::move(world), region, options.detect.meaning.most_sides);
   }
   if (world.has_masks()) return world;
-  Stage stage("object", 0, report, progress);
+  Stage stage("object", run.log);
   const EdgeWorld coarse = focused(world, {}, kCoarseSides);
   LiftOptions lift = options.lift;
   lift.stride_px *= kCoarser;
@@ -125,14 +125,13 @@ EdgelMap detect_on_silhouette(const Scene& scene, const Detector& detector, cons
 
 void detect_on_silhouettes(const Scene& scene, const Detector& detector,
                            const DetectOptions& options, Silhouettes* found, EdgeWorld* world) {
-  const double sides = options.meaning.most_sides;
   parallel_for(int(world->views.size()), 1, [&](int v) {
     if (found->mask[v].empty()) return;
     try {
       EdgelMap map = detect_on_silhouette(scene, detector, world->views[v], options.min_chain,
                                           &found->mask[v], &found->slack_px[v]);
       map.grey = world->maps[v].grey;
-      if (sides > 0) map = most_meaningful(map, sides * std::sqrt(double(map.width) * map.height));
+      if (options.meaning.most_sides > 0) map = most_meaningful(map, most_edgels(map, options));
       world->maps[v] = std::move(map);
     } catch (const InputError&) {
       return;  // it was read before: what was found then stays
@@ -142,12 +141,12 @@ void detect_on_silhouettes(const Scene& scene, const Detector& detector,
 
 }  // namespace
 
-EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world,
-                           const ReconstructOptions& options, RunReport* report,
-                           Progress* progress) {
+EdgeWorld add_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world,
+                          const Run& run) {
+  const ReconstructOptions& options = run.options;
   const bool known = world.object.table || (!options.box.isEmpty() && !world.has_masks());
   if (!options.silhouettes || !known) return world;
-  Stage stage("silhouettes", 0, report, progress);
+  Stage stage("silhouettes", run.log);
   Silhouettes found = find_silhouettes(world.views, world.object, [&](int view, int denominator) {
     return read_picture(world.views[view], denominator);
   });
@@ -155,21 +154,10 @@ EdgeWorld tell_silhouettes(const Scene& scene, const Detector& detector, EdgeWor
   stage.result(kept ? std::to_string(found.trusted) + " of " + std::to_string(world.views.size()) +
                           " views agree"
                     : "views do not agree");
-  report->counts.push_back({"silhouettes", kept ? double(found.trusted) : 0});
+  run.log.count("silhouettes", kept ? found.trusted : 0);
   if (kept && detector.takes_smaller_pictures())
     detect_on_silhouettes(scene, detector, options.detect, &found, &world);
   return with_silhouettes(std::move(world), found);
-}
-
-std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const ReconstructOptions& options,
-                                  RunReport* report, Progress* progress) {
-  Stage stage("lift", 0, report, progress);
-  std::vector<EdgePoint> points = lift_edges(world, options.lift);
-  if (points.empty())
-    throw TooLittleError("expected edges that several views see, found none that agree");
-  report->counts.push_back({"points", double(points.size())});
-  stage.result(std::to_string(points.size()) + " points");
-  return points;
 }
 
 }  // namespace sketchsplat

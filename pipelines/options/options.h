@@ -3,11 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "edges/views/lift.h"
-#include "edges/views/match.h"
 #include "pipelines/adjust/optimize.h"
 #include "pipelines/adjust/polish.h"
 #include "pipelines/adjust/regularize.h"
@@ -18,26 +16,13 @@
 #include "pipelines/join/close_graph.h"
 #include "pipelines/join/rechain.h"
 #include "pipelines/join/splice.h"
-#include "pipelines/survey/describe.h"
+#include "pipelines/options/common_options.h"
 #include "pipelines/survey/extent.h"
 #include "pipelines/survey/select.h"
 #include "sketches/fit/segment.h"
-#include "sketches/io/length_unit.h"
-#include "topology/faces/planar_faces.h"
 #include "topology/passes/simplify.h"
 
 namespace sketchsplat {
-
-/// What every verb understands.
-struct CommonOptions {
-  int threads = 0;  ///< 0: one per core. Results do not depend on it
-  int seed = 0;
-  bool quiet = false;
-  bool verbose = false;
-  bool json = false;                ///< results on standard output as JSON
-  std::string log;                  ///< file for everything that is said, too; empty: none
-  std::string config, save_config;  ///< files of options, see config_file.h; empty: none
-};
 
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
 struct ReconstructOptions : DetectionOptions {
@@ -82,43 +67,14 @@ struct ReconstructOptions : DetectionOptions {
   Deadline deadline;        ///< of this run: set by reconstruct()
 };
 
-/// What files for CAD programs say beside the curves.
-struct CadOptions {
-  LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
-  double scale = 1.0;                         ///< units per world unit
-  std::string scale_by = "none";              ///< what tells the scale instead, see known_scale.h
-  bool unit_given = false, scale_given = false;  ///< by the user
-  bool faces = false;                            ///< closed planar loops as faces, in STEP
-  PlanarFaceOptions face;
-};
-
-/// What is written beside the sketch, and how.
-struct OutputOptions {
-  int overlays = 4;              ///< views that are drawn over
-  double point_spacing = 0.005;  ///< fraction of the sketch's largest extent
-  bool shell = false;            ///< the faces that are sure, where they do not close to a solid
-  bool reproducible = false;     ///< no times, memory and threads in the reports
-  CadOptions cad;                ///< of sketch.step
-};
-
 /// The members of the option structs, as --help, reports and README show them. To add an option: a
 /// member with its default in the struct, and one line in options.cc.
-void list_fields(CommonOptions* options, Fields* fields);
 void list_fields(DetectionOptions* options, Fields* fields);
 void list_fields(ReconstructOptions* options, Fields* fields);
-void list_fields(CadOptions* options, Fields* fields);
-void list_fields(OutputOptions* options, Fields* fields);
-
-/// One price and one least deviation for all that is described.
-Prices prices(const ReconstructOptions& options);
 
 /// Sets what the preset (a name in preset_names()) stands for, leaves the rest alone. "balanced" is
 /// the defaults.
 void apply_preset(const std::string& preset, ReconstructOptions* options);
-std::vector<std::string> preset_names();
-
-/// Option names (as after "--") and the texts of their values.
-using OptionTexts = std::vector<std::pair<std::string, std::string>>;
 
 /// Sets options as a command line with these would, in this order. Throws UsageError.
 void set_options(const OptionTexts& texts, ReconstructOptions* options);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "pipelines/stages/options.h"
+#include "pipelines/options/options.h"
 
 namespace sketchsplat {
 
