@@ -8,15 +8,10 @@
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
-namespace {
 
 using Eigen::Vector3d;
 using Candidate = RegularityCandidate;
 using Trial = RelationTrial;
-
-constexpr double kGate = 4;  // [sigma] beyond which nothing is tried
-
-}  // namespace
 
 bool RegularityFinder::is_conic(int i) const {
   const StrokeKind kind = sketch().strokes[i].kind;
@@ -27,6 +22,20 @@ bool RegularityFinder::is_conic(int i) const {
 bool RegularityFinder::is_usable(int i) const {
   const Stroke& stroke = sketch().strokes[i];
   return is_closed(stroke.kind) || stroke.begin != stroke.end;
+}
+
+// The ends of a stroke, with `inner` also the inner points of a cubic; the centre of a closed one.
+std::set<int> RegularityFinder::points_of(int i, bool inner) const {
+  const Stroke& s = sketch().strokes[i];
+  const int handle = int(sketch().nodes.cols()) + s.handle;
+  if (is_closed(s.kind)) return {handle};
+  if (inner && s.kind == StrokeKind::kBezier) return {s.begin, s.end, handle, handle + 1};
+  return {s.begin, s.end};
+}
+
+bool RegularityFinder::holds_all(const std::set<int>& held, int i, bool inner) const {
+  const std::set<int> points = points_of(i, inner);
+  return std::includes(held.begin(), held.end(), points.begin(), points.end());
 }
 
 Vector3d RegularityFinder::place_of(int point) const {
@@ -181,17 +190,11 @@ void RegularityFinder::group(std::vector<Candidate> candidates, const SharedQuan
 
 // Nodes, inner points of cubics and centres of conics about the direction; value: offset along it.
 std::vector<Candidate> RegularityFinder::points_across(const Direction& direction) {
-  const int nodes = int(sketch().nodes.cols());
   std::set<int> points;
-  for (int i = 0; i < sketch().size(); ++i) {
-    const Stroke& stroke = sketch().strokes[i];
-    if (!is_usable(i) || is_closed(stroke.kind)) continue;
-    points.insert({stroke.begin, stroke.end});
-    if (stroke.kind == StrokeKind::kBezier)
-      points.insert({nodes + stroke.handle, nodes + stroke.handle + 1});
-  }
+  for (int i = 0; i < sketch().size(); ++i)
+    if (is_usable(i) && !is_closed(sketch().strokes[i].kind)) points.merge(points_of(i, true));
   for (int i : direction.strokes)
-    if (is_closed(sketch().strokes[i].kind)) points.insert(nodes + sketch().strokes[i].handle);
+    if (is_closed(sketch().strokes[i].kind)) points.merge(points_of(i, true));
   std::vector<Candidate> out;
   const Vector3d normal = weigher_.shared(direction.shared).value;
   const SharedQuantity plane = {SharedKind::kPlane, direction.shared, Vector3d::Zero()};
@@ -275,44 +278,32 @@ Relations RegularityFinder::kept() const {
   return out;
 }
 
-// Does the stroke lie in the plane whose points are `held`?
-bool RegularityFinder::lies_in(int stroke, const Direction& normal,
-                               const std::set<int>& held) const {
-  const Stroke& s = sketch().strokes[stroke];
-  const int handle = int(sketch().nodes.cols()) + s.handle;
-  if (is_conic(stroke) && std::count(normal.strokes.begin(), normal.strokes.end(), stroke) == 0)
-    return false;
-  if (is_closed(s.kind)) return held.count(handle) > 0;
-  if (s.kind == StrokeKind::kBezier && !(held.count(handle) && held.count(handle + 1)))
-    return false;
-  return held.count(s.begin) && held.count(s.end);
-}
-
 std::vector<Regularity> RegularityFinder::regularities() const {
   std::vector<Regularity> out;
   const auto add = [&](RelationKind kind, std::set<int> strokes) {
     if (strokes.size() > 1) out.push_back({kind, {strokes.begin(), strokes.end()}});
   };
-  const auto along = [&](int shared) -> const Direction& {
-    return *std::find_if(directions_.begin(), directions_.end(),
-                         [&](const Direction& d) { return d.shared == shared; });
+  const auto along = [&](int shared) -> const std::vector<int>& {
+    return std::find_if(directions_.begin(), directions_.end(),
+                        [&](const Direction& d) { return d.shared == shared; })
+        ->strokes;
   };
   for (int q = 0; q < weigher_.num_shared(); ++q) {
     if (!weigher_.is_used(q)) continue;
     const SharedQuantity& shared = weigher_.shared(q);
     if (shared.kind == SharedKind::kDirection) {
-      const std::vector<int>& strokes = along(q).strokes;
-      add(RelationKind::kParallel, {strokes.begin(), strokes.end()});
-    } else if (mirrors_.count(q)) {
-      std::set<int> strokes;
-      for (int i = 0; i < sketch().size(); ++i)
-        if (is_mirrored(i, held_[q])) strokes.insert(i);
-      add(RelationKind::kSymmetric, strokes);
+      add(RelationKind::kParallel, {along(q).begin(), along(q).end()});
     } else if (shared.kind == SharedKind::kPlane) {
+      // A mirror holds ends and centres; all points of strokes that lie in a plane, and only conics
+      // about its normal do.
+      const bool mirror = mirrors_.count(q) > 0;
+      const std::vector<int>& about = along(shared.direction);
       std::set<int> strokes;
       for (int i = 0; i < sketch().size(); ++i)
-        if (lies_in(i, along(shared.direction), held_[q])) strokes.insert(i);
-      add(RelationKind::kCoplanar, strokes);
+        if (holds_all(held_[q], i, !mirror) &&
+            (mirror || !is_conic(i) || std::count(about.begin(), about.end(), i) > 0))
+          strokes.insert(i);
+      add(mirror ? RelationKind::kSymmetric : RelationKind::kCoplanar, strokes);
     } else {
       add(shared.kind == SharedKind::kAxis ? RelationKind::kCoaxial : RelationKind::kEqualRadius,
           held_[q]);
@@ -322,8 +313,7 @@ std::vector<Regularity> RegularityFinder::regularities() const {
   for (const Relation& r : weigher_.relations().list) {
     if (r.kind != RelationKind::kPerpendicular) continue;
     std::set<int> strokes;
-    for (int q : {r.shared, r.other})
-      strokes.insert(along(q).strokes.begin(), along(q).strokes.end());
+    for (int q : {r.shared, r.other}) strokes.insert(along(q).begin(), along(q).end());
     add(r.kind, strokes);
   }
   return out;

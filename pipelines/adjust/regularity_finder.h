@@ -34,6 +34,7 @@ class RegularityFinder {
   std::vector<Regularity> regularities() const;
 
  private:
+  static constexpr double kGate = 4;  // [sigma] beyond which nothing is tried
   struct Direction {
     int shared = -1;
     double sigma = 0;          // [rad] of the first
@@ -58,12 +59,11 @@ class RegularityFinder {
   void group(std::vector<RegularityCandidate> candidates, const SharedQuantity& blank);
   void hold(int shared, const Relation& relation);
   bool is_conic(int stroke) const;
-  bool lies_in(int stroke, const Direction& normal, const std::set<int>& held) const;
+  bool holds_all(const std::set<int>& held, int stroke, bool inner) const;
   bool is_usable(int stroke) const;
-  std::set<int> ends_and_centres() const;
+  std::set<int> points_of(int stroke, bool inner) const;
   std::vector<RegularityCandidate> points_across(const Direction& direction);
   Mirror best_mirror(const Direction& direction);
-  bool is_mirrored(int stroke, const std::set<int>& held) const;
   bool is_sure(const RegularityCandidate& candidate) const;
   Eigen::Vector3d place_of(int point) const;
   const Sketch& sketch() const { return weigher_.sketch(); }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipelines/adjust/polish_tangent.h"
 #include "pipelines/adjust/regularity_finder.h"
 #include "sketches/curve/curve.h"
 
@@ -10,24 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGate = 4;    // [sigma] beyond which nothing is tried
 constexpr double kNearPx = 1;  // [px] by which mirrored points may miss one another at first
 constexpr int kFewestPairs = 2;
 constexpr int kMostPairs = 12;  // that are weighed at once
 
 }  // namespace
-
-std::set<int> RegularityFinder::ends_and_centres() const {
-  std::set<int> points;
-  for (int i = 0; i < sketch().size(); ++i) {
-    const Stroke& stroke = sketch().strokes[i];
-    if (is_closed(stroke.kind))
-      points.insert(int(sketch().nodes.cols()) + stroke.handle);
-    else if (is_usable(i))
-      points.insert({stroke.begin, stroke.end});
-  }
-  return points;
-}
 
 // The plane across a direction that mirrors most pairs of points.
 RegularityFinder::Mirror RegularityFinder::best_mirror(const Direction& direction) {
@@ -38,8 +26,11 @@ RegularityFinder::Mirror RegularityFinder::best_mirror(const Direction& directio
     int point;
     Vector3d at;  // along x, y and the direction [px]
   };
+  std::set<int> ends;  // and centres
+  for (int i = 0; i < sketch().size(); ++i)
+    if (is_usable(i)) ends.merge(points_of(i, false));
   std::vector<Placed> points;
-  for (int p : ends_and_centres()) {
+  for (const int p : ends) {
     const Vector3d d = (place_of(p) - weigher_.relations().origin) / weigher_.unit();
     points.push_back({p, {x.dot(d), y.dot(d), n.dot(d)}});
   }
@@ -109,11 +100,17 @@ void RegularityFinder::find_mirrors() {
   }
 }
 
-// Are all of its ends, or is its centre, among the points that a plane mirrors?
-bool RegularityFinder::is_mirrored(int stroke, const std::set<int>& held) const {
-  const Stroke& s = sketch().strokes[stroke];
-  if (is_closed(s.kind)) return held.count(int(sketch().nodes.cols()) + s.handle) > 0;
-  return held.count(s.begin) && held.count(s.end);
+void RegularityFinder::find_tangents() {
+  const double price = weigher_.options().price;
+  for (Relation& r : tangent_relations(sketch(), weigher_.options().tangent_angle)) {
+    r.scale = std::min(stroke_length(sketch(), r.stroke) / 2, stroke_length(sketch(), r.partner)) /
+              weigher_.unit();
+    std::vector<Relation> one = {r};
+    // It is expected: that it agrees is no chance, however vague it is.
+    const RelationTrial trial = weigher_.weigh(&one, r.scale, -2 * (price + kTangentLogOdds));
+    if (trial.pays()) weigher_.take(one, trial, true);
+    if (trial.pays() || !trial.news) tangents_.push_back({r.stroke, r.partner});
+  }
 }
 
 }  // namespace sketchsplat

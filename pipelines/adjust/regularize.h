@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: a sketch held against the edgels. Out: the sketch moved onto them, and to what its strokes
+// have in common. This folder may not include anything of pipelines but base and survey.
 #pragma once
 
 #include <vector>

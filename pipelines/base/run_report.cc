@@ -42,7 +42,8 @@ Stage::Stage(const std::string& name, const RunLog& log, int total)
 Stage::~Stage() {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began_;
   try {
-    if (log_.report) log_.report->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
+    if (log_.report)
+      log_.report->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
     if (log_.progress) log_.progress->end(result_);
   } catch (const std::bad_alloc&) {
     // Nothing may leave a destructor. Whoever has run out of memory says so; this is but a story.

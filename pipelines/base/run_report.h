@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: what a run does, as it does it. Out: its report, its progress, files, children, the machine.
+// This folder may not include anything else of pipelines.
 #pragma once
 
 #include <chrono>
@@ -25,8 +27,8 @@ struct StageReport {
 struct RunReport {
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   std::vector<StageReport> stages;
-  Numbers counts;               ///< of the scene and the method: "views", "edgels"
-  std::vector<Numbers> rounds;  ///< one row per round
+  Numbers counts;                        ///< of the scene and the method: "views", "edgels"
+  std::vector<Numbers> rounds;           ///< one row per round
   std::vector<Regularity> regularities;  ///< that the sketch keeps to
   std::vector<Numbers>
       strokes;  ///< what the confidence of each stroke was made of, see confidence.h

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: a list of scenes. Out: a result folder for each, and what has become of all of them.
+// This folder may not include program.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: a suite of scenes, variants and axes. Out: a row of numbers for each run, tables and charts.
+// This folder may not include batch or program.
 #pragma once
 
 #include <string>

@@ -10,8 +10,6 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kSpacingPx = 6;
-
 std::vector<char> rounds_among(const Sketch& sketch, const EdgeWorld& world,
                                const RoundModel& model) {
   const Observation wide = observe_rounds(sketch, world, 0);
@@ -41,7 +39,7 @@ Observation look(const Posed& posed, double reach_px) {
   MatchOptions match;
   match.reach_px = reach_px;
   match.quadratics = false;
-  return without_strokes(observe(posed.sketch, posed.world, match, kSpacingPx), posed.round);
+  return without_strokes(observe(posed.sketch, posed.world, match, kCameraSpacingPx), posed.round);
 }
 
 bool stands_among_things(const EdgeWorld& world) { return bool(world.object.table); }

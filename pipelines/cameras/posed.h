@@ -15,6 +15,10 @@ namespace sketchsplat {
 
 /// [px] How far beside strokes edgels tell of cameras that may err.
 constexpr double kCameraReachPx = 2;
+/// [px] between places of strokes that cameras are compared by.
+constexpr double kCameraSpacingPx = 6;
+/// Of the edgels: strokes that explain less may be accidents.
+constexpr double kLowShare = 0.4;
 
 /// The first strokes of a world.
 struct FirstStrokes {

@@ -20,12 +20,11 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kLowShare = 0.4;  // of the edgels: strokes that explain less may be accidents
 constexpr double kTimesChance = 2;
 constexpr double kFewEdgels = 0.01, kFewNats = 3;  // [of all, nat] of accidents, at least
 constexpr double kLeastShare = 0.1;   // of strokes by stated cameras that can be mended
 constexpr double kAstrayPx = 0.4;     // strokes by cameras that are right lie stiller in views
-constexpr double kStillPx = 0.25;     // edgels lie on strokes, by such cameras
+constexpr double kOnStrokePx = 0.25;  // edgels lie on strokes, by such cameras
 constexpr double kHeldPx = 1e-3;      // standard deviation of cameras that strokes do not move
 constexpr double kPointsOffPx = 0.1;  // points of cameras that are right lie stiller in views
 // Times these edgels, for cameras to move of which strokes say that they err, and for others; none
@@ -136,7 +135,7 @@ double still_share(const Posed& posed) {
   CameraPrior still;
   still.pose_px = kHeldPx, still.shared = false;
   const CameraFit fit = fit_cameras(posed.sketch, o, posed.world, {posed.world.views}, still, {});
-  return explained(fit.sketch, posed.world, kStillPx).share;
+  return explained(fit.sketch, posed.world, kOnStrokePx).share;
 }
 
 // Some cameras fit any few edges: those that had to move must have shown something before, or show
@@ -174,8 +173,8 @@ PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const StrokeFit& 
   const StatedCameras stated = stated_cameras(posed.world, scene);
   refit(&posed);
   Explained shares = explained(posed.sketch, posed.world);
-  const bool able = how != "off" && posed.world.views.size() >= kFewestViews &&
-                    run.options.detector != "2dgs-sn";
+  const bool able =
+      how != "off" && posed.world.views.size() >= kFewestViews && run.options.detector != "2dgs-sn";
   const Misfit off = able ? check_cameras(posed, stated, shares.share, run.log) : Misfit{};
   const bool astray = (shares.share < kLeastShare || off.offset_px > kAstrayPx) &&
                       !stands_among_things(posed.world);

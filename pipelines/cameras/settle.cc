@@ -17,10 +17,8 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kSpacingPx = 6;
-constexpr double kLowShare = 0.4;  // of the edgels: strokes that explain less may be accidents
-constexpr double kStillPx = 0.1;   // strokes stay as they were lifted
-constexpr double kMovedPx = 0.2;   // they are lifted, and cameras are fitted again
+constexpr double kStillPx = 0.1;  // strokes stay as they were lifted
+constexpr double kMovedPx = 0.2;  // they are lifted, and cameras are fitted again
 constexpr int kMostLifts = 5, kMostReturns = 3;
 
 // Match, move cameras and strokes, and match again with a reach that shrinks.
@@ -107,14 +105,14 @@ bool shared_is_wrong(const Posed& posed, const StatedCameras& stated, CameraPrio
 }
 
 // Moves cameras and strokes, and lifts again while that moves them; the offsets that are left.
-double settle(const StatedCameras& stated, const CameraPrior& prior,
-              const Refit& refit, Posed* posed) {
+double settle(const StatedCameras& stated, const CameraPrior& prior, const Refit& refit,
+              Posed* posed) {
   for (int round = 0;; ++round) {
     const std::vector<View> before = posed->world.views;
     const Sketch lifted = posed->sketch;
     const double after = refine(stated, prior, posed);
     const double moved = moved_px({lifted, before}, {posed->sketch, posed->world.views},
-                                  posed->world.footprint * kSpacingPx);
+                                  posed->world.footprint * kCameraSpacingPx);
     posed->world = refreshed(std::move(posed->world));
     if (moved < kStillPx) {
       posed->sketch = lifted;
@@ -126,8 +124,8 @@ double settle(const StatedCameras& stated, const CameraPrior& prior,
 }
 
 // Poses first; focal length, centre and lens if these do not do it.
-double refine_from(const StatedCameras& stated, CameraPrior prior,
-                   const Refit& refit, Posed* posed) {
+double refine_from(const StatedCameras& stated, CameraPrior prior, const Refit& refit,
+                   Posed* posed) {
   double after = settle(stated, prior, refit, posed);
   for (int k = 0; k < kMostReturns && bring_back(posed->sketch, stated, prior, &posed->world);
        ++k) {

@@ -10,7 +10,7 @@
 #include "edges/views/rim.h"
 #include "edges/views/unexplained.h"
 #include "pipelines/candidates/judged_candidates.h"
-#include "sketches/curve/sample.h"
+#include "pipelines/survey/explained.h"
 
 namespace sketchsplat {
 namespace {
@@ -23,12 +23,6 @@ constexpr double kShows = 1;          // [nat] of one of a group that is there
 constexpr double kAgainst = -2;       // [nat] of one of a group that is not there after all
 constexpr double kBeside = 0.4;       // of the nats of a candidate that copies aside may get
 constexpr double kGroupBeside = 0.6;  // of a group: short edges, moved aside, meet neighbours
-
-CurvePoints points_on(const Sketch& sketch, double spacing) {
-  const SampleLayout layout = plan_samples(sketch, spacing);
-  const Samples samples = evaluate_samples(sketch, layout);
-  return {samples.position, samples.tangent, layout.first};
-}
 
 EdgelFlags explained_by(const CurvePoints& strokes, const EdgeWorld& world) {
   EdgelFlags explained = no_edgels(world);
@@ -60,23 +54,24 @@ bool is_rim(const EdgeWorld& world, const CurvePoints& points, double least) {
   return rim.nats > least || rim.is_round(world.footprint);
 }
 
-// One pass over all candidates.
+// One pass over all candidates of the sketch as it is, to which it adds.
 class Pass {
  public:
-  Pass(const Sketch& sketch, const EdgeWorld& world, const MissingOptions& options, int ring_views,
-       std::vector<CurvePoints>* refused)
-      : sketch_(sketch),
-        world_(world),
+  Pass(const EdgeWorld& world, const MissingOptions& options, int ring_views,
+       std::vector<CurvePoints>* refused, MissingEdges* out)
+      : world_(world),
         options_(options),
-        strokes_(points_on(sketch, world.footprint)),
+        strokes_(points_on(out->sketch, world.footprint)),
         explained_(explained_by(strokes_, world)),
         judge_(world, strokes_, explained_, options.contrast),
-        all_(judge_candidates(sketch, world, explained_, judge_, ring_views, refused)),
+        all_(judge_candidates(out->sketch, world, explained_, judge_, ring_views, refused)),
         least_(alarm_threshold(all_.nulls, all_.singles + double(all_.refused),
-                               options.false_strokes / kPasses)) {}
+                               options.false_strokes / kPasses)),
+        out_(out) {}
 
-  MissingEdges run() {
-    out_ = {sketch_, {}, {}, {}, {}, {}, all_.tests()};
+  // The number of strokes that it adds.
+  int run() {
+    out_->candidates += all_.tests();
     std::vector<std::pair<double, int>> groups;  // the likeliest first
     for (const auto& [number, group] : all_.groups) groups.push_back({-at_first(group), number});
     std::sort(groups.begin(), groups.end());
@@ -89,8 +84,8 @@ class Pass {
       if (!(all_.nats[i] > least_)) break;
       add_single(i);
     }
-    append_strokes(added_, &out_.sketch);
-    return std::move(out_);
+    append_strokes(added_, &out_->sketch);
+    return added_.size();
   }
 
  private:
@@ -126,15 +121,15 @@ class Pass {
   void add(int i, double nats, int group) {
     judge_.take(all_.points[i]);
     append(all_.candidates[i], &added_);
-    out_.nats.push_back(nats);
-    out_.group.push_back(group);
+    out_->nats.push_back(nats);
+    out_->group.push_back(group);
     const Candidate& c = all_.candidates[i];
-    if (group >= 0 && c.kind == StrokeKind::kCircle) out_.rings.push_back(c.curve);
+    if (group >= 0 && c.kind == StrokeKind::kCircle) out_->rings.push_back(c.curve);
     if (group < 0 || is_closed(c.kind)) return;
     for (const Eigen::Vector3d& end : {c.curve.p[0], c.curve.p[c.curve.count - 1]}) {
-      const Eigen::Matrix3Xd& nodes = sketch_.nodes;
+      const Eigen::Matrix3Xd& nodes = out_->sketch.nodes;
       if ((nodes.colwise() - end).colwise().norm().minCoeff() > world_.footprint)
-        out_.corners.push_back(end);
+        out_->corners.push_back(end);
     }
   }
 
@@ -157,9 +152,9 @@ class Pass {
     if (!most_show(walls)) return;
     for (size_t k = 0; k < nats.size(); ++k) {
       const int i = group.members[k];
-      if (nats[k] > kAgainst && !is_known(all_.points[i])) add(i, nats[k], int(out_.known.size()));
+      if (nats[k] > kAgainst && !is_known(all_.points[i])) add(i, nats[k], int(out_->known.size()));
     }
-    out_.known.push_back(sum(group.known) + sum(group.known_floor));
+    out_->known.push_back(sum(group.known) + sum(group.known_floor));
   }
 
   void add_single(int i) {
@@ -173,7 +168,6 @@ class Pass {
     add(i, e.nats, -1);
   }
 
-  const Sketch& sketch_;
   const EdgeWorld& world_;
   const MissingOptions& options_;
   CurvePoints strokes_;
@@ -181,7 +175,7 @@ class Pass {
   ContrastJudge judge_;
   JudgedCandidates all_;
   double least_;  // [nat] of one that stands alone
-  MissingEdges out_;
+  MissingEdges* out_;
   Sketch added_;
 };
 
@@ -192,9 +186,7 @@ void drop_covered(int first, double px, MissingEdges* all) {
   for (int s = first; s < all->sketch.size(); ++s) of_group[s] = all->group[s - first] >= 0;
   const KnownCurves whole(keep_strokes(all->sketch, of_group), px, kKnownPx * px);
   for (int s = 0; s < first; ++s)
-    keep[s] =
-        whole.share(candidate_points({all->sketch.strokes[s].kind, control_points(all->sketch, s)},
-                                     px)) <= kWholeShare;
+    keep[s] = whole.share(candidate_points(candidate_of(all->sketch, s), px)) <= kWholeShare;
   all->sketch = keep_strokes(all->sketch, keep);
 }
 
@@ -209,15 +201,8 @@ MissingEdges add_missing(const Sketch& sketch, const EdgeWorld& world,
   // have to be likelier beside them: they come last.
   int ring_views = kRingViews;
   for (int pass = 0; pass < kPasses; ++pass) {
-    const MissingEdges more = Pass(out.sketch, world, options, ring_views, &refused).run();
-    out.sketch = more.sketch;
-    out.nats.insert(out.nats.end(), more.nats.begin(), more.nats.end());
-    for (const int g : more.group) out.group.push_back(g < 0 ? g : int(out.known.size()) + g);
-    out.known.insert(out.known.end(), more.known.begin(), more.known.end());
-    out.corners.insert(out.corners.end(), more.corners.begin(), more.corners.end());
-    out.rings.insert(out.rings.end(), more.rings.begin(), more.rings.end());
-    out.candidates += more.candidates;
-    if (more.nats.empty() && --ring_views < kFewestRingViews) break;
+    const int added = Pass(world, options, ring_views, &refused, &out).run();
+    if (added == 0 && --ring_views < kFewestRingViews) break;
   }
   drop_covered(sketch.size(), world.footprint, &out);
   return out;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
+// In: a sketch, and the pictures. Out: edges that the sketch leads to expect and the pictures show.
+// This folder may not include anything of pipelines but base and survey.
 #pragma once
 
 #include <vector>
 
 #include "edges/contrast/contrast_judge.h"
-#include "pipelines/candidates/known_curves.h"
+#include "pipelines/candidates/candidate.h"
 #include "sketches/graph/sketch.h"
 
 namespace sketchsplat {
@@ -18,8 +20,8 @@ struct MissingOptions {
 struct MissingEdges {
   /// With the strokes that were added, after the others, without those that they run along.
   Sketch sketch;
-  std::vector<double> nats;  ///< of each that was added
-  std::vector<int> group;    ///< of each: which many, there or not together, it is one of; or -1
+  std::vector<double> nats;   ///< of each that was added
+  std::vector<int> group;     ///< group index of each added stroke, or -1
   std::vector<double> known;  ///< [nat] of each group: that they are edges, by those known before
   std::vector<Eigen::Vector3d> corners;  ///< where those of groups end, but on known strokes
   std::vector<ControlPoints> rings;      ///< circles of groups

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/candidates/depth_copies.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <numeric>
 #include <utility>
 
 #include "datasets/types/parallel.h"
+#include "pipelines/candidates/generators.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -23,7 +21,6 @@ constexpr double kInner = 0.8;      // of the size of its level: larger loops bo
 constexpr int kMostLoops = 10;
 constexpr double kClearly = 3;  // [nat] more of what is seen from anywhere: then it is no pocket
 constexpr int kSides = 24;      // of a window, per stroke of the loop
-constexpr double kCornerSine = 0.2;  // strokes that meet at less go on smoothly
 
 using Eigen::Vector3d;
 
@@ -57,7 +54,7 @@ std::vector<std::vector<int>> closed_loops(const Sketch& s, const std::vector<in
 CurvePoints points_of(const Sketch& s, const std::vector<int>& loop, double px) {
   CurvePoints out;
   for (const int i : loop) {
-    const CurvePoints p = candidate_points({s.strokes[i].kind, control_points(s, i)}, px);
+    const CurvePoints p = candidate_points(candidate_of(s, i), px);
     const Eigen::Index n = out.position.cols(), m = p.position.cols();
     out.position.conservativeResize(3, n + m), out.tangent.conservativeResize(3, n + m);
     out.position.rightCols(m) = p.position, out.tangent.rightCols(m) = p.tangent;
@@ -88,8 +85,8 @@ int copy_of(const CurvePoints& loop, const Levels& l, size_t own, const KnownCur
 }
 
 // What is seen through the loop, and through its copy at a distance `by`, if there is one.
-std::shared_ptr<const std::vector<Window>> windows_at(const Sketch& s, const std::vector<int>& loop,
-                                                      const Vector3d& normal, const Vector3d& by) {
+Windows windows_at(const Sketch& s, const std::vector<int>& loop, const Vector3d& normal,
+                   const Vector3d& by) {
   std::vector<Eigen::Matrix3Xd> curves, copies;
   for (const int i : loop) {
     Eigen::Matrix3Xd c(3, kSides + 1);
@@ -127,8 +124,7 @@ std::vector<int> corners_of(const Sketch& s, const std::vector<int>& loop) {
 
 // Edges in which the walls of a pocket or hole meet, from the corners of its rim on.
 void add_walls(const Sketch& s, const std::vector<int>& loop, const Vector3d& by,
-               const std::shared_ptr<const std::vector<Window>>& windows, int group,
-               std::vector<Candidate>* out) {
+               const Windows& windows, int group, std::vector<Candidate>* out) {
   for (const int node : corners_of(s, loop)) {
     Candidate c;
     c.kind = StrokeKind::kLine;
@@ -142,10 +138,9 @@ void add_walls(const Sketch& s, const std::vector<int>& loop, const Vector3d& by
 }
 
 void add_copy(const Sketch& s, const std::vector<int>& loop, const Vector3d& by,
-              const std::shared_ptr<const std::vector<Window>>& windows, int group,
-              std::vector<Candidate>* out) {
+              const Windows& windows, int group, std::vector<Candidate>* out) {
   for (const int i : loop) {
-    out->push_back(moved({s.strokes[i].kind, control_points(s, i)}, by));
+    out->push_back(moved(candidate_of(s, i), by));
     out->back().windows = windows;
     out->back().group = group;
     out->back().floor = group >= 0;

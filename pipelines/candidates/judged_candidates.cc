@@ -6,12 +6,7 @@
 #include <memory>
 
 #include "datasets/types/parallel.h"
-#include "pipelines/candidates/depth_copies.h"
-#include "pipelines/candidates/level_copies.h"
-#include "pipelines/candidates/level_rings.h"
-#include "pipelines/candidates/pattern_copies.h"
-#include "pipelines/candidates/ring_patterns.h"
-#include "pipelines/candidates/symmetry_copies.h"
+#include "pipelines/candidates/generators.h"
 
 namespace sketchsplat {
 namespace {
@@ -85,7 +80,7 @@ std::vector<Candidate> all_candidates(const Sketch& sketch, const EdgeWorld& wor
 }
 
 // Several sources may tell of one place, from either end.
-constexpr double kSamePx = 0.7;
+constexpr double kSamePlacePx = 0.7;
 bool is_same(const CurvePoints& a, const CurvePoints& b, double reach) {
   const auto first = a.position.col(0), last = a.position.col(a.position.cols() - 1);
   const auto middle = a.position.col(a.position.cols() / 2);
@@ -94,7 +89,6 @@ bool is_same(const CurvePoints& a, const CurvePoints& b, double reach) {
          ((first - b.position.col(0)).norm() < reach || (last - b.position.col(0)).norm() < reach);
 }
 
-using Windows = std::shared_ptr<const std::vector<Window>>;
 struct Seen {
   double nats = -INFINITY;
   Windows windows;  // of the likeliest way to see it
@@ -136,7 +130,9 @@ void collect(const std::vector<Candidate>& all, const KnownCurves& known, double
       (c.floor ? group.known_floor : group.known).push_back(share * kKnownNats);
     }
     if (share > (c.group >= 0 && !pattern ? kWholeShare : kKnownShare)) continue;
-    const auto is_this = [&](const CurvePoints& p) { return is_same(p, points, kSamePx * px); };
+    const auto is_this = [&](const CurvePoints& p) {
+      return is_same(p, points, kSamePlacePx * px);
+    };
     if (c.group < 0 && std::any_of(out->points.begin(), out->points.end(), is_this)) continue;
     if (c.group < 0 && std::any_of(refused.begin(), refused.end(), is_this)) {
       ++out->refused;

@@ -6,7 +6,7 @@
 
 #include "edges/contrast/contrast_judge.h"
 #include "edges/views/unexplained.h"
-#include "pipelines/candidates/known_curves.h"
+#include "pipelines/candidates/candidate.h"
 
 namespace sketchsplat {
 

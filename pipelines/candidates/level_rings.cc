@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/candidates/level_rings.h"
-
 #include <cmath>
 
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "datasets/types/widest_gap.h"
+#include "pipelines/candidates/generators.h"
 #include "sketches/fit/fit.h"
 
 namespace sketchsplat {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/candidates/symmetry_copies.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
-#include "pipelines/candidates/circles.h"
+#include "pipelines/candidates/generators.h"
 #include "topology/core/plain_curve.h"
 
 namespace sketchsplat {
@@ -15,8 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostRepeats = 12;  // around an axis
-constexpr size_t kMostAxes = 8;   // of the largest circles
+constexpr int kMostTurns = 12;   // around an axis
+constexpr size_t kMostAxes = 8;  // of the largest circles
 constexpr int kMostMirrors = 3;
 constexpr int kPlaces = 12;          // of a stroke at which motions are tried
 constexpr double kOffMiddle = 0.15;  // of the size of the sketch, of an axis from its middle
@@ -60,7 +58,7 @@ Places places_of(const Sketch& sketch, double px) {
   Eigen::AlignedBox3d box;
   double all = 0;
   for (int s = 0; s < sketch.size(); ++s) {
-    const Candidate c{sketch.strokes[s].kind, control_points(sketch, s)};
+    const Candidate c = candidate_of(sketch, s);
     CurvePoints p = candidate_points(c, px);
     const double length = px * double(p.position.cols());
     p = candidate_points(c, std::max(px, length / kPlaces));
@@ -94,7 +92,7 @@ std::vector<Eigen::Affine3d> turns_of(const Sketch& sketch, const Places& places
     for (size_t s = 0; s < places.at.size(); ++s)
       if (known.share(moved_by(places.at[s], turn_about(axis, kAnyTurn))) <= kWholeShare)
         moved.push_back(int(s));
-    for (int n = kMostRepeats; n >= 2; --n) {
+    for (int n = kMostTurns; n >= 2; --n) {
       if (!repeats(turn_about(axis, 2 * M_PI / n), moved, places, known)) continue;
       std::vector<Eigen::Affine3d> out;
       for (int k = 0; k < n; ++k) out.push_back(turn_about(axis, 2 * M_PI * k / n));

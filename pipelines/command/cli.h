@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: verbs with their options. Out: the command line that they make, its help and exit statuses.
+// This folder may not include the method or what is written of it.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: a scene. Out: the edgels of each view, and how to tell print from shape.
+// This folder may not include anything of pipelines but base.
 #pragma once
 
 #include <exception>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: strokes, and the edgels of all views. Out: strokes joined, cut and closed where that shortens
+// the description. This folder may not include anything of pipelines but base and survey.
 #pragma once
 
 #include "edges/views/lift.h"

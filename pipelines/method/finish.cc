@@ -177,7 +177,8 @@ void report_sketch(const FinishedSketch& finished, const EdgeWorld& world, const
   const std::vector<int> curve = chain_of_strokes(chains, sketch.size());
   for (Regularity& r : log.report->regularities)
     for (int& s : r.strokes) s = curve[s];
-  for (int s = 0; s < sketch.size(); ++s) log.report->strokes[s].push_back({"curve", double(curve[s])});
+  for (int s = 0; s < sketch.size(); ++s)
+    log.report->strokes[s].push_back({"curve", double(curve[s])});
   log.count("strokes", sketch.size());
   for (int k = 0; k < kRelationKinds; ++k) {
     const RelationKind kind = RelationKind(k);

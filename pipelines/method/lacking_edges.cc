@@ -7,8 +7,8 @@
 
 #include "datasets/types/parallel.h"
 #include "edges/views/unexplained.h"
+#include "pipelines/survey/explained.h"
 #include "sketches/curve/curve.h"
-#include "sketches/curve/sample.h"
 #include "topology/solid/surface.h"
 
 namespace sketchsplat {
@@ -61,10 +61,8 @@ bool meets(const std::vector<RoundFace>& faces, const Eigen::Vector3d& from,
 }
 
 // Edgels along the solid's edges, outlines, and what may be shading.
-EdgelFlags explained_by(const Solid& solid, const Samples& samples, const SampleLayout& layout,
-                        const EdgeWorld& world) {
-  EdgelFlags explained = no_edgels(world);
-  explain(world, {samples.position, samples.tangent, layout.first}, {}, &explained);
+EdgelFlags explained_by(const Solid& solid, const EdgeWorld& world) {
+  EdgelFlags explained = edgels_along(solid.edges, world);
   const std::vector<RoundFace> faces = round_faces(solid, world.footprint);
   parallel_for(int(world.maps.size()), 1, [&](int v) {
     const View& view = world.views[v];
@@ -89,10 +87,8 @@ LackingEdges lacking_edges(const Solid& solid, const EdgeWorld& world, const Det
   if (!world.has_masks()) return out;
   LiftOptions lift = options;
   lift.min_views = std::max(lift.min_views, kFewestViews);
-  const SampleLayout layout = plan_samples(solid.edges, kSpacing * world.footprint);
-  const Samples samples = evaluate_samples(solid.edges, layout);
-  const std::vector<EdgePoint> points = lift_edges(
-      unexplained(world, explained_by(solid, samples, layout, world), kLeastChain), lift);
+  const std::vector<EdgePoint> points =
+      lift_edges(unexplained(world, explained_by(solid, world), kLeastChain), lift);
   if (points.empty()) return out;
   CurvePoints places;
   places.position.resize(3, long(points.size()));
@@ -104,7 +100,8 @@ LackingEdges lacking_edges(const Solid& solid, const EdgeWorld& world, const Det
   }
   const std::vector<EdgeKind> kinds = detector.judge(places);
   out.points = int(points.size() - std::count(kinds.begin(), kinds.end(), EdgeKind::kPrint));
-  const double known = double(samples.position.cols()) * kSpacing / lift.stride_px;
+  const double samples = points_on(solid.edges, kSpacing * world.footprint).first.back();
+  const double known = samples * kSpacing / lift.stride_px;
   if (out.points > 0) out.share = out.points / (out.points + known);
   return out;
 }

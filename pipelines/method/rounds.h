@@ -14,7 +14,8 @@ namespace sketchsplat {
 /// Rounds of moving the strokes of a world and simplifying their graph.
 class Rounds {
  public:
-  /// World and run must outlive it. `odds`: of the first strokes; without any, as strokes have them.
+  /// World and run must outlive it. `odds`: of the first strokes; without any, as strokes have
+  /// them.
   Rounds(const EdgeWorld& world, const PriorOdds& odds, const Run& run);
 
   /// Rounds, until the graph does not change any more or the options limit them: strokes are drawn

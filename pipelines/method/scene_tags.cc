@@ -32,12 +32,12 @@ std::vector<TagSquare> measure_tags(const Scene& scene, const RunLog& log) {
   }
   const std::vector<TagSquare> tags = fit_tags(scene.views, patches);
   if (tags.empty())
-    throw TooLittleError(scene.folder +
-                         ": expected an AprilTag 36h11 that lies still in at least three pictures, "
-                         "24 pixels wide or more, found " +
-                         (with_tags == 0 ? std::string("none")
-                                         : "tags in " + std::to_string(with_tags) +
-                                               " that do not make one square"));
+    throw TooLittleError(
+        scene.folder +
+        ": expected an AprilTag 36h11 that lies still in at least three pictures, "
+        "24 pixels wide or more, found " +
+        (with_tags == 0 ? std::string("none")
+                        : "tags in " + std::to_string(with_tags) + " that do not make one square"));
   std::string result;
   for (const TagSquare& t : tags) {
     const auto seen = std::count_if(patches.begin(), patches.end(),

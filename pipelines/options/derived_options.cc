@@ -38,7 +38,8 @@ SelectOptions select_options(const ReconstructOptions& options, const PriorOdds&
 ExtentOptions extent_options(const ReconstructOptions& options) {
   ExtentOptions extent = options.extent;
   extent.box = options.box;
-  if (uses_surfels(options)) extent.gap_price = std::max(extent.gap_price, options.surfel_gap_price);
+  if (uses_surfels(options))
+    extent.gap_price = std::max(extent.gap_price, options.surfel_gap_price);
   return extent;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: texts of options. Out: the structs of all stages, checked. This folder may not include
+// cameras, the method, or what is written of it.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -17,7 +17,8 @@ using Kind = ScaleReference::Kind;
 [[noreturn]] void refuse(const std::string& text) {
   throw UsageError(
       "--scale-by: expected tag=LENGTH, tag:ID=, size=, diameter=, circle:N=, line:N= or "
-      "nodes:N-M=, LENGTH in --unit or with mm, cm, m or inch behind it, got '" + text + "'");
+      "nodes:N-M=, LENGTH in --unit or with mm, cm, m or inch behind it, got '" +
+      text + "'");
 }
 
 // A whole number and nothing else.

@@ -19,8 +19,8 @@ struct ScaleReference {
     kNodes,     ///< distance of the nodes `first` and `second`
   };
   Kind kind = Kind::kSize;
-  int first = -1, second = -1;  ///< as sketch.json counts
-  double length = 0;            ///< > 0
+  int first = -1, second = -1;     ///< as sketch.json counts
+  double length = 0;               ///< > 0
   std::optional<LengthUnit> unit;  ///< of the length; if nobody says, that of the files
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: results as JSON and pictures. Out: pages of HTML and pictures with curves drawn over them.
+// This folder may not include anything else of pipelines.
 #pragma once
 
 #include <string>

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
+// In: a reconstruction, and how large its world is. Out: all files of a result.
+// This folder may not include command lines.
 #pragma once
 
 #include <string>
 
 #include "pipelines/method/reconstruct.h"
-#include "pipelines/pages/page_photos.h"
-#include "pipelines/results/known_scale.h"
 #include "pipelines/options/options.h"
 #include "pipelines/options/output_options.h"
+#include "pipelines/pages/page_photos.h"
+#include "pipelines/results/known_scale.h"
 #include "sketches/io/io.h"
 
 namespace sketchsplat {

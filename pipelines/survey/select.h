@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: strokes, and the edgels of all views. Out: what the views show of each stroke, and which are
+// edges. This folder may not include anything of pipelines but base.
 #pragma once
 
 #include "edges/views/lift.h"

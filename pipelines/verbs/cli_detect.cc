@@ -18,6 +18,7 @@
 #include "pipelines/base/atomic_file.h"
 #include "pipelines/command/cli.h"
 #include "pipelines/detectors/detectors.h"
+#include "pipelines/options/options.h"
 #include "pipelines/results/geometry_files.h"
 #include "sketches/io/json.h"
 

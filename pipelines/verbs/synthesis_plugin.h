@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// In: the options of a verb. Out: its work done, through results and the method.
+// This folder may not include bench, batch or program.
 #pragma once
 
 #include "datasets/synthetic/write/plugin.h"

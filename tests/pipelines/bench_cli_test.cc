@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipelines/bench/suite.h"
+#include "pipelines/options/options.h"
 #include "tests/pipelines/program.h"
 
 namespace sketchsplat {

@@ -4,11 +4,7 @@
 #include <algorithm>
 
 #include "pipelines/candidates/add_missing.h"
-#include "pipelines/candidates/level_copies.h"
-#include "pipelines/candidates/level_rings.h"
-#include "pipelines/candidates/pattern_copies.h"
-#include "pipelines/candidates/ring_patterns.h"
-#include "pipelines/candidates/symmetry_copies.h"
+#include "pipelines/candidates/generators.h"
 #include "tests/support/wireframe.h"
 
 namespace sketchsplat {

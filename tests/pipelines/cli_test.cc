@@ -6,6 +6,7 @@
 #include <regex>
 #include <sstream>
 
+#include "pipelines/options/options.h"
 #include "tests/pipelines/program.h"
 
 namespace sketchsplat {

@@ -86,8 +86,7 @@ TEST(Observe, EverySampleOfAnEdgeMeetsItsEdgelInEveryView) {
   for (const SampleMatch& m : o.matches.matches) {
     double depth;
     const Edgel& e = world.maps[m.view].edgels[m.edgel];
-    const Eigen::Vector2d p =
-        world.views[m.view].project(o.samples.position.col(m.sample), &depth);
+    const Eigen::Vector2d p = world.views[m.view].project(o.samples.position.col(m.sample), &depth);
     EXPECT_NEAR((p.x() - e.x) * e.nx + (p.y() - e.y) * e.ny, m.distance_px, 1e-3);
   }
   const Observation none = observe(moved(cube_sketch(12), {0.05, 0.03, 0.04}), world, match, 3);

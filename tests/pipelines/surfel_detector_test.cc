@@ -208,9 +208,7 @@ class Knowing : public Detector {
     std::vector<EdgeKind> kinds;
     for (int i = 0; i < curves.position.cols(); ++i) {
       const double x = curves.position(0, i);
-      kinds.push_back(x > 0.3   ? EdgeKind::kPrint
-                      : x < 0.1 ? EdgeKind::kShape
-                                : EdgeKind::kUnknown);
+      kinds.push_back(x > 0.3 ? EdgeKind::kPrint : x < 0.1 ? EdgeKind::kShape : EdgeKind::kUnknown);
     }
     return kinds;
   }

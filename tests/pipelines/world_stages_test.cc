@@ -102,7 +102,8 @@ TEST(WorldStages, ASecondLookTellsHowFarAnObjectReaches) {
     if (std::abs(x - 0.5) > 0.8) print.curves.push_back({{x, -0.4, 0}, {x, 1.4, 0}});
   for (const double half : {0.18, 0.27, 0.36}) add_square(0.2, half, &steps);
   RunReport report;
-  const EdgeWorld near = focus_on_object(on_a_table({hub, print, steps}), {ReconstructOptions(), {&report}});
+  const EdgeWorld near =
+      focus_on_object(on_a_table({hub, print, steps}), {ReconstructOptions(), {&report}});
   ASSERT_TRUE(near.object.table);
   for (const double x : {0.14, 0.86})
     for (const double y : {0.14, 0.86}) EXPECT_TRUE(near.object.contains({x, y, 0.2})) << x << y;
@@ -121,8 +122,7 @@ TEST(WorldStages, CornersInPocketsDoNotMoveFarFromWhereTheRimHasThem) {
   const Run run{options, {&report}};
   const Sketch free = polish_and_regularize({sketch, {}, {}}, world, run).sketch;
   EXPECT_NEAR(free.nodes(2, 0), corner.z(), 0.3 * world.footprint) << "it may slide along";
-  const Sketch held =
-      polish_and_regularize({sketch, {stated}, {}}, world, run).sketch;
+  const Sketch held = polish_and_regularize({sketch, {stated}, {}}, world, run).sketch;
   EXPECT_LT((held.nodes.col(0) - stated).norm(), 1e-12);
   EXPECT_LT((held.nodes.col(1) - free.nodes.col(1)).norm(), 1e-12) << "others are free";
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/candidates/level_copies.h"
+#include "pipelines/candidates/levels.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "pipelines/candidates/generators.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
@@ -13,9 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSameDeg = 1.5;     // directions that are one
-constexpr double kCornerSine = 0.2;  // lines that meet at less tell no plane
-constexpr int kFewest = 2;           // strokes or corners of a direction
+constexpr double kSameDeg = 1.5;  // directions that are one
+constexpr int kFewestAcross = 2;  // strokes or corners of a direction
 constexpr int kMostDirections = 12;
 constexpr int kMostLevels = 8;     // of a direction, that strokes are copied to
 constexpr double kMostFacets = 6;  // points along a stroke by which it is known to lie in a level
@@ -24,19 +24,6 @@ struct Direction {
   Vector3d sum;
   int count;
 };
-
-}  // namespace
-
-Vector3d plane_normal(StrokeKind kind, const ControlPoints& c) {
-  Vector3d n = Vector3d::Zero();
-  if (kind == StrokeKind::kCircle) n = c.p[1];
-  if (kind == StrokeKind::kEllipse) n = c.p[1].cross(c.p[2]);
-  if (kind == StrokeKind::kArc) n = (c.p[1] - c.p[0]).cross(c.p[2] - c.p[0]);
-  if (kind == StrokeKind::kEllipticArc) n = (c.p[1] - c.p[0]).cross(c.p[3] - c.p[0]);
-  return n.norm() > 0 ? Vector3d(n.normalized()) : n;
-}
-
-namespace {
 
 void count_direction(const Vector3d& n, std::vector<Direction>* all) {
   const double same = std::cos(kSameDeg * M_PI / 180);
@@ -118,7 +105,7 @@ Levels levels_across(const Sketch& s, const Vector3d& normal, double tolerance) 
 std::vector<Levels> find_levels(const Sketch& sketch, double tolerance) {
   std::vector<Levels> out;
   for (const Direction& d : directions(sketch)) {
-    if (d.count < kFewest || int(out.size()) == kMostDirections) break;
+    if (d.count < kFewestAcross || int(out.size()) == kMostDirections) break;
     out.push_back(levels_across(sketch, d.sum.normalized(), tolerance));
   }
   return out;
@@ -131,28 +118,6 @@ std::vector<char> main_levels(const Levels& l) {
                    [&](int a, int b) { return l.strokes[a].size() > l.strokes[b].size(); });
   std::vector<char> out(order.size(), 0);
   for (size_t k = 0; k < order.size() && k < kMostLevels; ++k) out[order[k]] = 1;
-  return out;
-}
-
-Candidate moved(const Candidate& candidate, const Eigen::Affine3d& by) {
-  Candidate out = candidate;
-  // Axes of closed curves are vectors, not places.
-  const int places = is_closed(candidate.kind) ? 1 : candidate.curve.count;
-  for (int k = 0; k < out.curve.count; ++k) {
-    out.curve.p[k] = by.linear() * candidate.curve.p[k];
-    if (k < places) out.curve.p[k] += by.translation();
-  }
-  return out;
-}
-
-Candidate moved(const Candidate& candidate, const Vector3d& by) {
-  return moved(candidate, Eigen::Affine3d(Eigen::Translation3d(by)));
-}
-
-Eigen::Affine3d mirror(const Vector3d& normal, double height) {
-  Eigen::Affine3d out = Eigen::Affine3d::Identity();
-  out.linear() -= 2 * normal * normal.transpose();
-  out.translation() = 2 * height * normal;
   return out;
 }
 
@@ -174,8 +139,19 @@ std::vector<Candidate> level_copies(const Sketch& sketch, const std::vector<Leve
       for (const int stroke : l.strokes[from])
         for (size_t to = 0; to < l.height.size(); ++to)
           if (to != from && main[to])
-            out.push_back(moved({sketch.strokes[stroke].kind, control_points(sketch, stroke)},
-                                (l.height[to] - l.height[from]) * l.normal));
+            out.push_back(
+                moved(candidate_of(sketch, stroke), (l.height[to] - l.height[from]) * l.normal));
+  }
+  return out;
+}
+
+std::vector<Candidate> mirror_copies(const Sketch& sketch, const std::vector<Levels>& levels) {
+  std::vector<Candidate> out;
+  for (const Levels& l : levels) {
+    if (l.height.size() < 2) continue;
+    const double middle = 0.5 * (l.height.front() + l.height.back());
+    const Eigen::Affine3d by = mirror(l.normal, middle);
+    for (int i = 0; i < sketch.size(); ++i) out.push_back(moved(candidate_of(sketch, i), by));
   }
   return out;
 }
