@@ -21,7 +21,7 @@ std::vector<char> rounds_among(const Sketch& sketch, const EdgeWorld& world,
 
 }  // namespace
 
-Refit refit_by(const StrokeFit& fit, const Run& run) {
+Refit refit_by(const StrokeFit& fit, const MethodRun& run) {
   return [fit, run](Posed* posed) {
     posed->report = {};
     posed->round.clear();

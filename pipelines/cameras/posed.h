@@ -29,7 +29,7 @@ struct FirstStrokes {
 
 /// Lifts edgels and fits strokes by the cameras as they are. Throws TooLittleError if views agree
 /// on nothing.
-using StrokeFit = std::function<FirstStrokes(const EdgeWorld& world, const Run& run)>;
+using StrokeFit = std::function<FirstStrokes(const EdgeWorld& world, const MethodRun& run)>;
 
 /// First strokes by cameras that may err.
 struct Posed {
@@ -44,7 +44,7 @@ struct Posed {
 /// Fits strokes anew, in the world as it is; none if views agree on nothing.
 using Refit = std::function<void(Posed*)>;
 /// By this fit; `log` is told of it, but for what belongs into the report, which is the posed's.
-Refit refit_by(const StrokeFit& fit, const Run& run);
+Refit refit_by(const StrokeFit& fit, const MethodRun& run);
 
 /// What views show of the strokes that are not round: where lines of sight touch a round moves with
 /// the view as if cameras erred.

@@ -147,7 +147,7 @@ bool proves_cameras(const Posed& before, const Posed& after) {
 
 // Cameras that fit, where these ones do not and others explain more; true if they moved.
 bool move_cameras(const StatedCameras& stated, const Misfit& off, const Refit& refit,
-                  const Run& run, Posed* posed) {
+                  const MethodRun& run, Posed* posed) {
   const Posed first = *posed;
   Stage stage("poses", run.log);
   const double after = settle_cameras(first, stated, off, refit, posed);
@@ -166,7 +166,7 @@ bool move_cameras(const StatedCameras& stated, const Misfit& off, const Refit& r
 }  // namespace
 
 PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const StrokeFit& fit,
-                          const Run& run) {
+                          const MethodRun& run) {
   const Refit refit = refit_by(fit, run);
   const std::string& how = run.options.refine_poses;
   Posed posed{std::move(world)};

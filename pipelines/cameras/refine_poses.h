@@ -27,6 +27,6 @@ struct PosedStrokes {
 /// if views agree on hardly more than they would by accident. Points of structure from motion, if
 /// the scene has any, hold the cameras where they fit them.
 PosedStrokes pose_and_fit(const Scene& scene, EdgeWorld world, const StrokeFit& fit,
-                          const Run& run);
+                          const MethodRun& run);
 
 }  // namespace sketchsplat

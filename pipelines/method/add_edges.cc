@@ -57,7 +57,7 @@ Sketch without_improbable(Sketch sketch, int first, const MissingEdges& missing,
 
 }  // namespace
 
-Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const Run& run) {
+Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const MethodRun& run) {
   const ReconstructOptions& options = run.options;
   const Closed closed = options.close.on && !options.deadline.passed()
                             ? close_graph(sketch, world, prices(options), options.close)
@@ -68,7 +68,7 @@ Sketch close_sketch(const Sketch& sketch, const EdgeWorld& world, const Run& run
   return closed.sketch;
 }
 
-WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world, const Run& run) {
+WithMissing add_missing_edges(const Sketch& sketch, const EdgeWorld& world, const MethodRun& run) {
   const ReconstructOptions& options = run.options;
   const bool pictures = std::any_of(world.maps.begin(), world.maps.end(),
                                     [](const EdgelMap& m) { return m.grey != nullptr; });

@@ -141,7 +141,7 @@ void refuse_if_edges_lack(const EdgeWorld& world, const Detector& detector, cons
 }  // namespace
 
 SolidSearch close_solid(const Sketch& sketch, const EdgeWorld& world, const Detector& detector,
-                        const Run& run) {
+                        const MethodRun& run) {
   SolidSearch search;
   if (run.options.solid == "off") {
     search.why = "it was not asked for";

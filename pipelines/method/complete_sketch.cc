@@ -56,7 +56,7 @@ Sketch polished(const Sketch& sketch, const EdgeWorld& world, const ReconstructO
 }  // namespace
 
 FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, const EdgeWorld& world,
-                               const Run& run) {
+                               const MethodRun& run) {
   const ReconstructOptions& options = run.options;
   if (!found->solid && !(options.inferred && found->shell)) return finished;
   Stage stage("complete", run.log);

@@ -10,7 +10,7 @@ namespace sketchsplat {
 /// added (unless the options are against it), strokes that were one edge seen twice, or pieces of
 /// one, are one. As given if there is no solid. Doubtful strokes of `found` are renamed.
 FinishedSketch complete_sketch(FinishedSketch finished, SolidSearch* found, const EdgeWorld& world,
-                               const Run& run);
+                               const MethodRun& run);
 
 /// Doubtful strokes by their new indices, -1 for those that are gone.
 void rename_doubtful(const std::vector<int>& now, SolidSearch* found);

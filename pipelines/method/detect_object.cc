@@ -31,7 +31,7 @@ double most_edgels(const EdgelMap& map, const DetectOptions& options) {
 }  // namespace
 
 EdgeWorld detect_scene(const Scene& scene, Detector* detector, const std::vector<TagSquare>& tags,
-                       const Run& run) {
+                       const MethodRun& run) {
   std::vector<Detection> found = detect_all(scene, detector, run.log);
   std::vector<View> views;
   std::vector<EdgelMap> maps;
@@ -68,7 +68,7 @@ ObjectRegion find_object_in(const EdgeWorld& coarse, const std::vector<EdgePoint
 
 }  // namespace
 
-EdgeWorld focus_on_object(EdgeWorld world, const Run& run) {
+EdgeWorld focus_on_object(EdgeWorld world, const MethodRun& run) {
   const ReconstructOptions& options = run.options;
   if (!options.box.isEmpty()) {
     ObjectRegion region;
@@ -142,7 +142,7 @@ void detect_on_silhouettes(const Scene& scene, const Detector& detector,
 }  // namespace
 
 EdgeWorld add_silhouettes(const Scene& scene, const Detector& detector, EdgeWorld world,
-                          const Run& run) {
+                          const MethodRun& run) {
   const ReconstructOptions& options = run.options;
   const bool known = world.object.table || (!options.box.isEmpty() && !world.has_masks());
   if (!options.silhouettes || !known) return world;

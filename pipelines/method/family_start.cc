@@ -102,7 +102,7 @@ Freed set_free(const Sketch& fitted, const EdgeWorld& world, const ReconstructOp
 
 }  // namespace
 
-FamilyStart start_from_siblings(const EdgeWorld& world, const Run& run) {
+FamilyStart start_from_siblings(const EdgeWorld& world, const MethodRun& run) {
   const ReconstructOptions& options = run.options;
   if (options.like.empty()) return {};
   Stage stage("family", run.log);

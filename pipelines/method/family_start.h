@@ -18,7 +18,7 @@ struct FamilyStart {
 /// counts in its favour. Strokes that fewer than options.select.sure_views views see stay with the
 /// family. The part is none of it, and the report says so, if too many of its edgels lie on no
 /// stroke, or too many strokes on no edgels. Throws InputError.
-FamilyStart start_from_siblings(const EdgeWorld& world, const Run& run);
+FamilyStart start_from_siblings(const EdgeWorld& world, const MethodRun& run);
 
 /// The options for what follows: what siblings know needs no rounds, and what no view sees no
 /// polish. What siblings lack and few views show is rather an accident.

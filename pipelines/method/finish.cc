@@ -79,7 +79,7 @@ StrokeObservation with_evidence(const EdgeWorld& world, const ReconstructOptions
 }
 
 FinishedSketch polish_and_regularize(const WithMissing& all, const EdgeWorld& world,
-                                     const Run& run) {
+                                     const MethodRun& run) {
   const ReconstructOptions& options = run.options;
   Stage stage("polish", run.log);
   FinishedSketch out;

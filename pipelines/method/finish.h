@@ -32,7 +32,7 @@ StrokeObservation with_evidence(const EdgeWorld& world, const ReconstructOptions
 /// Last polish on the edgels, regularities, and the evidence. Corners in pockets and rings of
 /// patterns that move by more than a pixel go back: few views see them, and others what hides them.
 FinishedSketch polish_and_regularize(const WithMissing& all, const EdgeWorld& world,
-                                     const Run& run);
+                                     const MethodRun& run);
 
 /// Fills in evidence and features. `implied`: per stroke the probability that something else than
 /// the images gives it, or none. A stroke that is probable by this alone has the evidence of one

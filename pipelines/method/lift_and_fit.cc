@@ -47,7 +47,7 @@ Sketch completed(const Sketch& sketch, const EdgeWorld& world, const Reconstruct
 
 }  // namespace
 
-std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const Run& run) {
+std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const MethodRun& run) {
   Stage stage("lift", run.log);
   std::vector<EdgePoint> points = lift_edges(world, run.options.lift);
   if (points.empty())
@@ -58,7 +58,7 @@ std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const Run& run) {
 }
 
 FirstStrokes fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
-                         const Run& run) {
+                         const MethodRun& run) {
   Stage stage("fit", run.log);
   const Sketch first = first_curves(points, world, run.options);
   const Selection selection = select_strokes(first, world, select_options(run.options));
@@ -75,7 +75,7 @@ FirstStrokes fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& 
   return out;
 }
 
-FirstStrokes lift_and_fit(const EdgeWorld& world, const Run& run) {
+FirstStrokes lift_and_fit(const EdgeWorld& world, const MethodRun& run) {
   return fit_strokes(lift_scene(world, run), world, run);
 }
 

@@ -11,15 +11,15 @@
 namespace sketchsplat {
 
 /// The space sweep over all edgels; stage "lift". Throws TooLittleError if no point is found.
-std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const Run& run);
+std::vector<EdgePoint> lift_scene(const EdgeWorld& world, const MethodRun& run);
 
 /// Strokes from lifted points, stage "fit": linked to chains, cut into the simplest curves, moved
 /// onto the edgels, chosen by what they explain, and as long as the views see them.
 FirstStrokes fit_strokes(const std::vector<EdgePoint>& points, const EdgeWorld& world,
-                         const Run& run);
+                         const MethodRun& run);
 
 /// Both, one after the other: a StrokeFit.
-FirstStrokes lift_and_fit(const EdgeWorld& world, const Run& run);
+FirstStrokes lift_and_fit(const EdgeWorld& world, const MethodRun& run);
 
 /// Strokes of the edgels that no stroke of `sketch` explains, not chosen yet. They are few, so that
 /// fewer views need to agree on a point.

@@ -30,7 +30,7 @@ ReconstructOptions started(ReconstructOptions options) {
   return options;
 }
 
-void report_stop(const Run& run) {
+void report_stop(const MethodRun& run) {
   if (!run.options.deadline.passed()) return;
   char text[120];
   std::snprintf(text, sizeof text, "the budget of %g s is used up: not all was refined",
@@ -51,7 +51,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
                            Progress* progress) {
   const ReconstructOptions options = started(given);
   Reconstruction out;
-  const Run run{options, {&out.report, progress}};
+  const MethodRun run{options, {&out.report, progress}};
   out.report.warnings = scene.warnings;
 
   // Detect: pictures, no larger than it takes, become edgels.
@@ -72,7 +72,7 @@ Reconstruction reconstruct(const Scene& scene, Detector* detector, const Reconst
                                   : PosedStrokes{std::move(seen), family.sketch};
   const EdgeWorld& world = posed.world;
   const ReconstructOptions later = options_after(family, options);
-  const Run late{later, run.log};
+  const MethodRun late{later, run.log};
 
   // Rounds of moving the strokes and simplifying their graph, and a second look at the edgels that
   // are left.

@@ -23,7 +23,7 @@ Simplified simpler_graph(const Sketch& sketch, const EdgeWorld& world,
 
 }  // namespace
 
-Rounds::Rounds(const EdgeWorld& world, const PriorOdds& odds, const Run& run)
+Rounds::Rounds(const EdgeWorld& world, const PriorOdds& odds, const MethodRun& run)
     : world_(world), odds_(odds), run_(run), targets_(make_targets(world, run.options.optimize)) {}
 
 Rounds::Round Rounds::run_round(const Sketch& sketch) {

@@ -16,7 +16,7 @@ class Rounds {
  public:
   /// World and run must outlive it. `odds`: of the first strokes; without any, as strokes have
   /// them.
-  Rounds(const EdgeWorld& world, const PriorOdds& odds, const Run& run);
+  Rounds(const EdgeWorld& world, const PriorOdds& odds, const MethodRun& run);
 
   /// Rounds, until the graph does not change any more or the options limit them: strokes are drawn
   /// and moved (optimize) if there are steps, weighed, and the graph is simplified; the graph that
@@ -37,7 +37,7 @@ class Rounds {
 
   const EdgeWorld& world_;
   const PriorOdds odds_;
-  const Run& run_;
+  const MethodRun& run_;
   const std::vector<EdgeTarget> targets_;
 };
 

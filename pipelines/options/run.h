@@ -9,7 +9,7 @@ struct ReconstructOptions;
 
 /// One reconstruction on its way: what was asked for (options.h), until when (its deadline), and
 /// where what happens is written down.
-struct Run {
+struct MethodRun {
   const ReconstructOptions& options;
   RunLog log;
 };

@@ -33,7 +33,7 @@ TEST(StrokeStages, ASecondLookFindsTheEdgesThatTheFirstOneLacks) {
   ReconstructOptions options;
   options.rounds = 0;
   RunReport report;
-  const Run run{options, {&report}};
+  const MethodRun run{options, {&report}};
   const Sketch all = Rounds(world, {}, run).second_look(cube_sketch(9));
   ASSERT_EQ(all.size(), 12);
   const std::vector<Polyline> truth = cube_edges({0.2, 0.2, 0.2}, 0.6);

@@ -119,7 +119,7 @@ TEST(WorldStages, CornersInPocketsDoNotMoveFarFromWhereTheRimHasThem) {
   sketch.add_stroke(StrokeKind::kLine, a, b, {});
   ReconstructOptions options;
   RunReport report;
-  const Run run{options, {&report}};
+  const MethodRun run{options, {&report}};
   const Sketch free = polish_and_regularize({sketch, {}, {}}, world, run).sketch;
   EXPECT_NEAR(free.nodes(2, 0), corner.z(), 0.3 * world.footprint) << "it may slide along";
   const Sketch held = polish_and_regularize({sketch, {stated}, {}}, world, run).sketch;
