@@ -23,13 +23,4 @@ void write_exr(const std::string& path, const std::vector<FloatChannel>& channel
 /// All channels of an OpenEXR file, values as they are. Throws InputError.
 std::vector<FloatChannel> read_exr(const std::string& path);
 
-/// Writes the colours of a picture as a JPEG file of that quality, in [1, 100], whose colours have
-/// half of the resolution; whole or not at all. The folder must exist. Throws OutputError.
-void write_jpeg(const std::string& path, const Picture& picture, int quality);
-
-/// What is left of the colours of a picture after a JPEG file of that quality, in [1, 100], whose
-/// colours have half of the resolution; alpha stays as it is. Throws std::runtime_error if JPEG
-/// cannot be encoded.
-Picture through_jpeg(const Picture& picture, int quality);
-
 }  // namespace sketchsplat

@@ -114,6 +114,24 @@ std::unique_ptr<OIIO::ImageInput> open_image(const char* path, OIIO::ImageSpec* 
   return nullptr;
 }
 
+/// All numbers of an image, interleaved.
+bool read_numbers(OIIO::ImageInput* input, const OIIO::ImageSpec& spec, const char* path,
+                  std::vector<float>* numbers, std::string* found) {
+  if (!is_believable(spec, path, found)) return false;
+  input->threads(1);
+  numbers->resize(size_t(spec.width) * spec.height * spec.nchannels);
+  if (input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, numbers->data()))
+    return true;
+  *found = input->geterror();
+  return false;
+}
+
+std::vector<float> plane_of(const std::vector<float>& numbers, size_t channels, size_t channel) {
+  std::vector<float> plane(numbers.size() / channels);
+  for (size_t i = 0; i < plane.size(); ++i) plane[i] = numbers[i * channels + channel];
+  return plane;
+}
+
 bool read_planes(const char* path, bool header_only, Planes* planes, std::string* found) {
   OIIO::ImageSpec spec;
   const std::unique_ptr<OIIO::ImageInput> input = open_image(path, &spec, found);
@@ -127,21 +145,10 @@ bool read_planes(const char* path, bool header_only, Planes* planes, std::string
   planes->height = spec.height;
   planes->channels = int(channels.size());
   if (header_only) return true;
-  if (!is_believable(spec, path, found)) return false;
-
-  input->threads(1);
-  std::vector<float> interleaved(size_t(spec.width) * spec.height * spec.nchannels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data())) {
-    *found = input->geterror();
-    return false;
-  }
-  const size_t pixels = size_t(spec.width) * spec.height;
-  for (size_t c = 0; c < channels.size(); ++c) {
-    planes->plane[c].resize(pixels);
-    for (size_t i = 0; i < pixels; ++i) {
-      planes->plane[c][i] = interleaved[i * spec.nchannels + channels[c]];
-    }
-  }
+  std::vector<float> numbers;
+  if (!read_numbers(input.get(), spec, path, &numbers, found)) return false;
+  for (size_t c = 0; c < channels.size(); ++c)
+    planes->plane[c] = plane_of(numbers, size_t(spec.nchannels), size_t(channels[c]));
   // Formats that store premultiplied colours (TIFF, OpenEXR) ignore the wish above, and some TIFF
   // writers do not say which of the two they mean.
   if (spec.alpha_channel >= 0 && !spec.get_int_attribute("oiio:UnassociatedAlpha") &&
@@ -151,6 +158,19 @@ bool read_planes(const char* path, bool header_only, Planes* planes, std::string
   for (std::vector<float>& plane : planes->plane) {
     for (float& v : plane) v = v > 0 ? std::min(v, 1.0f) : 0.0f;  // NaN becomes 0
   }
+  return true;
+}
+
+bool read_exr(const char* path, FloatPlanes* planes, std::string* found) {
+  OIIO::ImageSpec spec;
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(path, &spec, found);
+  std::vector<float> numbers;
+  if (!input || !read_numbers(input.get(), spec, path, &numbers, found)) return false;
+  planes->width = spec.width;
+  planes->height = spec.height;
+  planes->names = spec.channelnames;
+  for (size_t c = 0; c < planes->names.size(); ++c)
+    planes->plane.push_back(plane_of(numbers, planes->names.size(), c));
   return true;
 }
 
@@ -174,63 +194,6 @@ bool write_exr(const char* path, const FloatPlanes& planes, bool half, std::stri
       output->close())
     return true;
   *found = output->geterror();
-  return false;
-}
-
-bool read_exr(const char* path, FloatPlanes* planes, std::string* found) {
-  OIIO::ImageSpec spec;
-  const std::unique_ptr<OIIO::ImageInput> input = open_image(path, &spec, found);
-  if (!input) return false;
-  input->threads(1);
-  if (!is_believable(spec, path, found)) return false;
-  const size_t channels = size_t(spec.nchannels), pixels = size_t(spec.width) * spec.height;
-  std::vector<float> interleaved(pixels * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data())) {
-    *found = input->geterror();
-    return false;
-  }
-  planes->width = spec.width;
-  planes->height = spec.height;
-  planes->names = spec.channelnames;
-  planes->plane.assign(channels, std::vector<float>(pixels));
-  for (size_t c = 0; c < channels; ++c)
-    for (size_t i = 0; i < pixels; ++i) planes->plane[c][i] = interleaved[i * channels + c];
-  return true;
-}
-
-bool encode_jpeg(const unsigned char* rows, int width, int height, int quality,
-                 std::vector<unsigned char>* bytes, std::string* found) {
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("jpeg");
-  if (!output || !output->supports("ioproxy")) {
-    *found = "OpenImageIO writes no JPEG to memory";
-    return false;
-  }
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("Compression", "jpeg:" + std::to_string(quality));
-  OIIO::Filesystem::IOVecOutput memory(*bytes);
-  output->threads(1);
-  if (output->set_ioproxy(&memory) && output->open("memory.jpg", spec) &&
-      output->write_image(OIIO::TypeDesc::UINT8, rows) && output->close())
-    return true;
-  *found = output->geterror();
-  return false;
-}
-
-bool decode_jpeg(const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
-                 std::string* found) {
-  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  const std::unique_ptr<OIIO::ImageInput> input =
-      OIIO::ImageInput::open("memory.jpg", nullptr, &memory);
-  if (!input) {
-    *found = OIIO::geterror();
-    return false;
-  }
-  input->threads(1);
-  rows->resize(size_t(input->spec().width) * input->spec().height * 3);
-  if (input->spec().nchannels == 3 &&
-      input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rows->data()))
-    return true;
-  *found = input->geterror();
   return false;
 }
 
@@ -259,15 +222,6 @@ const ImagePlugin kPlugin = {
     },
     [](const char* path, FloatPlanes* planes, std::string* found) {
       return guarded(found, [&] { return read_exr(path, planes, found); });
-    },
-    [](const unsigned char* rows, int width, int height, int quality,
-       std::vector<unsigned char>* bytes, std::string* found) {
-      return guarded(found,
-                     [&] { return encode_jpeg(rows, width, height, quality, bytes, found); });
-    },
-    [](const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
-       std::string* found) {
-      return guarded(found, [&] { return decode_jpeg(bytes, rows, found); });
     },
 };
 

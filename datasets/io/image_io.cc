@@ -2,19 +2,20 @@
 #include "datasets/io/image_io.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
-#include <new>
+#include <stdexcept>
 
 #include "datasets/io/image_plugin.h"
 #include "datasets/io/jpeg_codec.h"
 #include "datasets/io/png_codec.h"
 #include "datasets/io/shrink_planes.h"
+#include "datasets/io/write_whole.h"
 #include "datasets/types/errors.h"
 
 namespace sketchsplat {
@@ -22,20 +23,18 @@ namespace {
 
 constexpr char kExpected[] = "an image";
 constexpr std::int64_t kMostImageBytes = 4 * kMostPixels;  // of files; hardly any is that large
+constexpr size_t kAll = std::numeric_limits<size_t>::max();
 
 struct CloseFile {
   void operator()(FILE* file) const { std::fclose(file); }
 };
-using File = std::unique_ptr<FILE, CloseFile>;
 
-/// Opens a regular file that is not empty. Throws InputError.
-File open_image(const std::string& path, size_t* size) {
-  File file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw InputError(path, kExpected, std::strerror(errno));
+/// The first bytes of a regular file that is not empty. Throws InputError.
+std::string read_bytes(const std::string& path, size_t most) {
+  const std::unique_ptr<FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
   struct stat status;
-  if (::fstat(::fileno(file.get()), &status) != 0) {
+  if (!file || ::fstat(::fileno(file.get()), &status) != 0)
     throw InputError(path, kExpected, std::strerror(errno));
-  }
   if (S_ISDIR(status.st_mode)) throw InputError(path, kExpected, "a directory");
   if (!S_ISREG(status.st_mode)) throw InputError(path, kExpected, "no regular file");
   if (status.st_size == 0) throw InputError(path, kExpected, "an empty file");
@@ -43,28 +42,29 @@ File open_image(const std::string& path, size_t* size) {
     throw InputError(path,
                      "an image of at most " + std::to_string(kMostImageBytes / 1000000) + " MB",
                      std::to_string(status.st_size / 1000000) + " MB");
-  *size = size_t(status.st_size);
-  return file;
+  std::string bytes(std::min(size_t(status.st_size), most), '\0');
+  bytes.resize(std::fread(&bytes[0], 1, bytes.size(), file.get()));
+  return bytes;
 }
 
-bool begins_with(const std::string& signature, FILE* file) {
-  char head[8] = {};
-  const size_t n = std::fread(head, 1, signature.size(), file);
-  std::rewind(file);
-  return signature.compare(0, std::string::npos, head, n) == 0;
+bool begins_with(const std::string& signature, const std::string& file) {
+  return file.compare(0, signature.size(), signature) == 0;
 }
-bool is_png(FILE* file) { return begins_with("\x89PNG\r\n\x1a\n", file); }
-bool is_jpeg(FILE* file) { return begins_with("\xff\xd8\xff", file); }
+bool is_png(const std::string& file) { return begins_with("\x89PNG\r\n\x1a\n", file); }
+bool is_jpeg(const std::string& file) { return begins_with("\xff\xd8\xff", file); }
 
-// -------------------------------------------------------------------- JPEG, everything else
+// -------------------------------------------------------------------------------------- reading
+
+[[noreturn]] void refuse(const std::string& path, const std::string& format,
+                         const std::string& found) {
+  throw InputError(path, "a whole " + format + " image", "a broken one (" + found + ")");
+}
 
 /// Decoders of JPEG fill what is missing with grey and say nothing. After the last start of a scan
 /// (FF DA) there must be an end of image (FF D9); compressed data hold neither by chance.
-void check_jpeg_is_whole(const std::string& path, const std::string& bytes) {
-  const size_t scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
-  if (end == std::string::npos || (scan != std::string::npos && end < scan)) {
-    throw InputError(path, "a whole JPEG image", "a broken one (no end)");
-  }
+bool has_end_of_jpeg(const std::string& file) {
+  const size_t scan = file.rfind("\xff\xda"), end = file.rfind("\xff\xd9");
+  return end != std::string::npos && (scan == std::string::npos || end > scan);
 }
 
 Planes read_by_plugin(const std::string& path, bool header_only) {
@@ -79,35 +79,30 @@ Planes read_by_plugin(const std::string& path, bool header_only) {
   return planes;
 }
 
-/// False if it is no JPEG, or one of a kind that libjpeg does not turn into RGB.
-bool read_jpeg(const std::string& path, FILE* file, size_t size, int denominator, Planes* planes) {
-  if (!is_jpeg(file)) return false;
-  std::string bytes(size, '\0');
-  bytes.resize(std::fread(&bytes[0], 1, size, file));
-  check_jpeg_is_whole(path, bytes);
-  std::string found;
-  if (decode_jpeg(bytes, denominator, planes, &found)) return true;
-  if (!found.empty()) throw InputError(path, "a whole JPEG image", "a broken one (" + found + ")");
-  return false;
-}
-
-// What of a denominator libjpeg does by itself.
+/// What of a denominator the decoder of JPEG does by itself.
 int jpeg_part(int denominator) {
   for (const int part : {8, 4, 2})
     if (denominator % part == 0) return part;
   return 1;
 }
 
+/// False if it is one of a kind that the decoder leaves to the plug-in.
+bool read_jpeg(const std::string& path, const std::string& file, int denominator, Planes* planes) {
+  if (!has_end_of_jpeg(file)) refuse(path, "JPEG", "no end");
+  std::string found;
+  if (decode_jpeg(file, denominator, planes, &found)) return true;
+  if (!found.empty()) refuse(path, "JPEG", found);
+  return false;
+}
+
 Planes read_planes(const std::string& path, int denominator) {
-  size_t size = 0;
-  const File file = open_image(path, &size);
   Planes planes;
-  if (is_png(file.get())) {
+  const std::string file = read_bytes(path, kAll);
+  const int part = jpeg_part(denominator);
+  if (is_png(file)) {
     std::string found;
-    if (!decode_png(file.get(), size, &planes, &found))
-      throw InputError(path, "a whole PNG image", "a broken one (" + found + ")");
-  } else if (const int part = jpeg_part(denominator);
-             read_jpeg(path, file.get(), size, part, &planes)) {
+    if (!decode_png(file, &planes, &found)) refuse(path, "PNG", found);
+  } else if (is_jpeg(file) && read_jpeg(path, file, part, &planes)) {
     denominator /= part;
   } else {
     planes = read_by_plugin(path, false);
@@ -118,27 +113,34 @@ Planes read_planes(const std::string& path, int denominator) {
 
 // ---------------------------------------------------------------------------------- writing
 
-void write_planes(const std::string& path, int width, int height,
-                  const std::vector<const float*>& planes) {
-  if (width <= 0 || height <= 0) throw OutputError(path, "an image without pixels");
-  const size_t channels = planes.size(), pixels = size_t(width) * height;
-  std::vector<unsigned char> rows(pixels * channels);
-  for (size_t c = 0; c < channels; ++c) {
-    for (size_t i = 0; i < pixels; ++i) {
-      const float v = planes[c][i] > 0 ? std::min(planes[c][i], 1.0f) : 0.0f;
-      rows[i * channels + c] = static_cast<unsigned char>(v * 255.0f + 0.5f);
+/// 8-bit rows of interleaved channels.
+std::vector<unsigned char> rows_of(const std::vector<const Image<float>*>& channels) {
+  std::vector<unsigned char> rows(channels[0]->data.size() * channels.size());
+  for (size_t c = 0; c < channels.size(); ++c) {
+    const std::vector<float>& values = channels[c]->data;
+    for (size_t i = 0; i < values.size(); ++i) {
+      const float v = values[i] > 0 ? std::min(values[i], 1.0f) : 0.0f;  // NaN becomes 0
+      rows[i * channels.size() + c] = static_cast<unsigned char>(v * 255.0f + 0.5f);
     }
   }
-  const std::string part = path + "." + std::to_string(::getpid()) + ".part";
-  FILE* file = std::fopen(part.c_str(), "wb");
-  if (!file) throw OutputError(path, std::strerror(errno));
-  std::string found;
-  encode_png(rows.data(), width, height, int(channels), file, &found);
-  if (std::fclose(file) != 0 && found.empty()) found = std::strerror(errno);
-  if (found.empty() && std::rename(part.c_str(), path.c_str()) != 0) found = std::strerror(errno);
-  if (found.empty()) return;
-  std::remove(part.c_str());
-  throw OutputError(path, found);
+  return rows;
+}
+
+void write_channels(const std::string& path, const std::vector<const Image<float>*>& channels) {
+  const int width = channels[0]->width, height = channels[0]->height;
+  if (width <= 0 || height <= 0) throw OutputError(path, "an image without pixels");
+  std::string bytes, found;
+  if (!encode_png(rows_of(channels).data(), width, height, int(channels.size()), &bytes, &found))
+    throw OutputError(path, found);
+  write_whole(path, bytes);
+}
+
+std::string jpeg_of(const Picture& picture, int quality) {
+  std::string bytes, found;
+  if (!encode_jpeg(rows_of({&picture.red, &picture.green, &picture.blue}).data(), picture.width(),
+                   picture.height(), quality, &bytes, &found))
+    throw std::runtime_error("JPEG: " + found);
+  return bytes;
 }
 
 Image<float> as_image(int width, int height, std::vector<float> data) {
@@ -175,32 +177,44 @@ Image<float> read_grey(const std::string& path, int denominator) {
 }
 
 ImageSize read_image_size(const std::string& path) {
-  size_t size = 0;
-  const File file = open_image(path, &size);
-  ImageSize found;
-  if (is_jpeg(file.get())) {
-    if (jpeg_size(file.get(), &found.width, &found.height)) return found;
-    throw InputError(path, "a whole JPEG image", "a broken one (no header)");
-  }
-  if (!is_png(file.get())) {
+  ImageSize size;
+  constexpr size_t kUsualHead = 1 << 16;  // bytes; of JPEG, headers may be longer
+  std::string file = read_bytes(path, kUsualHead);
+  if (is_png(file)) {
+    if (!png_size(file, &size.width, &size.height)) refuse(path, "PNG", "no header");
+  } else if (is_jpeg(file)) {
+    if (!jpeg_size(file, &size.width, &size.height) &&
+        !jpeg_size(read_bytes(path, kAll), &size.width, &size.height))
+      refuse(path, "JPEG", "no header");
+  } else {
     const Planes planes = read_by_plugin(path, true);
-    return {planes.width, planes.height};
+    size = {planes.width, planes.height};
   }
-  if (!png_size(file.get(), &found.width, &found.height)) {
-    throw InputError(path, "a whole PNG image", "a broken one (no header)");
-  }
-  return found;
+  return size;
 }
 
-void write_png(const std::string& path, const Image<float>& grey) {
-  write_planes(path, grey.width, grey.height, {grey.data.data()});
-}
+void write_png(const std::string& path, const Image<float>& grey) { write_channels(path, {&grey}); }
 
 void write_png(const std::string& path, const Picture& picture) {
-  std::vector<const float*> planes = {picture.red.data.data(), picture.green.data.data(),
-                                      picture.blue.data.data()};
-  if (!picture.alpha.empty()) planes.push_back(picture.alpha.data.data());
-  write_planes(path, picture.width(), picture.height(), planes);
+  std::vector<const Image<float>*> channels = {&picture.red, &picture.green, &picture.blue};
+  if (!picture.alpha.empty()) channels.push_back(&picture.alpha);
+  write_channels(path, channels);
+}
+
+void write_jpeg(const std::string& path, const Picture& picture, int quality) {
+  write_whole(path, jpeg_of(picture, quality));
+}
+
+Picture through_jpeg(const Picture& picture, int quality) {
+  Planes planes;
+  std::string found;
+  if (!decode_jpeg(jpeg_of(picture, quality), 1, &planes, &found))
+    throw std::runtime_error("JPEG: " + found);
+  Picture out = picture;
+  out.red.data = std::move(planes.plane[0]);
+  out.green.data = std::move(planes.plane[1]);
+  out.blue.data = std::move(planes.plane[2]);
+  return out;
 }
 
 }  // namespace sketchsplat

@@ -11,7 +11,7 @@ namespace sketchsplat {
 
 /// Reads an image file: 8 or 16 bit grey, grey + alpha, RGB, RGBA -> [0, 1], alpha not
 /// premultiplied, samples as stored (no gamma, no rotation by EXIF: models are calibrated on the
-/// rows as they lie in the file). PNG is decoded by libpng, JPEG by libjpeg; for anything else
+/// rows as they lie in the file). PNG is decoded by libpng, JPEG by libturbojpeg; for anything else
 /// OpenImageIO is loaded on the first call. A `denominator` above 1 gives a picture so much
 /// smaller, rounded up (see Camera::shrunk), for a fraction of the time if it is even and the file
 /// is JPEG; blocks are averaged otherwise. Throws InputError if the file is missing, truncated or
@@ -31,5 +31,13 @@ ImageSize read_image_size(const std::string& path);
 /// under a temporary name, then renamed. The folder must exist. Throws OutputError.
 void write_png(const std::string& path, const Image<float>& grey);
 void write_png(const std::string& path, const Picture& picture);  ///< RGB, RGBA if alpha is there
+
+/// Writes the colours of a picture as a JPEG file of that quality, in [1, 100], whose colours have
+/// half of the resolution; whole or not at all. The folder must exist. Throws OutputError.
+void write_jpeg(const std::string& path, const Picture& picture, int quality);
+
+/// What is left of the colours of a picture after a JPEG file of that quality, in [1, 100], whose
+/// colours have half of the resolution; alpha stays as it is.
+Picture through_jpeg(const Picture& picture, int quality);
 
 }  // namespace sketchsplat

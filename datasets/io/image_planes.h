@@ -34,11 +34,6 @@ struct ImagePlugin {
   /// OpenEXR, whatever the file is called; `half`: 16 bits per number, else 32.
   bool (*write_exr)(const char* path, const FloatPlanes& planes, bool half, std::string* found);
   bool (*read_exr)(const char* path, FloatPlanes* planes, std::string* found);
-  /// Bytes of a JPEG file from 8-bit rows of three interleaved channels; quality in [1, 100].
-  bool (*encode_jpeg)(const unsigned char* rows, int width, int height, int quality,
-                      std::vector<unsigned char>* bytes, std::string* found);
-  bool (*decode_jpeg)(const std::vector<unsigned char>& bytes, std::vector<unsigned char>* rows,
-                      std::string* found);
 };
 
 inline constexpr char kImagePluginSymbol[] = "sketchsplat_image_plugin";

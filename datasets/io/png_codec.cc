@@ -19,6 +19,8 @@ struct PngState {
   bool writing = false;
   char message[128] = "";
   std::vector<png_byte> rows;
+  const std::string* in = nullptr;  // the file that is read
+  size_t at = 0;                    // in it
 
   explicit PngState(bool write) : writing(write) {
     png = write ? png_create_write_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning)
@@ -43,6 +45,17 @@ struct PngState {
   }
   static void on_warning(png_structp, png_const_charp) {}
 };
+
+void read_bytes(png_structp png, png_bytep bytes, size_t count) {
+  PngState* state = static_cast<PngState*>(png_get_io_ptr(png));
+  if (count > state->in->size() - state->at) png_error(png, "Read Error");
+  std::memcpy(bytes, state->in->data() + state->at, count);
+  state->at += count;
+}
+
+void write_bytes(png_structp png, png_bytep bytes, size_t count) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<char*>(bytes), count);
+}
 
 template <typename T, int kChannels>
 void append_row(const png_byte* row, float largest, Planes* planes) {
@@ -85,11 +98,11 @@ bool allocate(size_t stored_bytes, size_t file_size, size_t stride, bool interla
   return true;
 }
 
-bool decode(FILE* file, size_t file_size, PngState* state, Planes* planes) {
+bool decode(PngState* state, Planes* planes) {
   png_structp png = state->png;
   png_infop info = state->info;
   if (setjmp(png_jmpbuf(png))) return false;
-  png_init_io(png, file);
+  png_set_read_fn(png, state, read_bytes);
   png_set_option(png, PNG_IGNORE_ADLER32, PNG_OPTION_ON);  // each chunk has a checksum of its own
   png_read_info(png, info);
   planes->width = int(png_get_image_width(png, info));
@@ -103,7 +116,7 @@ bool decode(FILE* file, size_t file_size, PngState* state, Planes* planes) {
   planes->channels = png_get_channels(png, info);
   const bool deep = png_get_bit_depth(png, info) == 16;
   const size_t stride = png_get_rowbytes(png, info);
-  if (!allocate(stored_bytes, file_size, stride, passes > 1, state, planes)) {
+  if (!allocate(stored_bytes, state->in->size(), stride, passes > 1, state, planes)) {
     std::snprintf(state->message, sizeof state->message,
                   "more pixels than the file can hold, or too many");
     return false;
@@ -120,13 +133,13 @@ bool decode(FILE* file, size_t file_size, PngState* state, Planes* planes) {
   return true;
 }
 
-bool encode(const png_byte* rows, int width, int height, int channels, FILE* file,
+bool encode(const png_byte* rows, int width, int height, int channels, std::string* bytes,
             PngState* state) {
   static constexpr int kColorTypes[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA,
                                         PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGBA};
   png_structp png = state->png;
   if (setjmp(png_jmpbuf(png))) return false;
-  png_init_io(png, file);
+  png_set_write_fn(png, bytes, write_bytes, nullptr);
   png_set_compression_level(png, 1);
   png_set_filter(png, 0, channels == 1 ? PNG_FILTER_NONE : PNG_FILTER_SUB);
   png_set_IHDR(png, state->info, width, height, 8, kColorTypes[channels - 1], PNG_INTERLACE_NONE,
@@ -141,10 +154,11 @@ bool encode(const png_byte* rows, int width, int height, int channels, FILE* fil
 
 }  // namespace
 
-bool decode_png(FILE* file, size_t file_size, Planes* planes, std::string* found) {
+bool decode_png(const std::string& file, Planes* planes, std::string* found) {
   try {
     PngState state(false);
-    if (decode(file, file_size, &state, planes)) return true;
+    state.in = &file;
+    if (decode(&state, planes)) return true;
     *found = state.message;
   } catch (const std::bad_alloc&) {
     *found = "too large for the memory";
@@ -152,10 +166,10 @@ bool decode_png(FILE* file, size_t file_size, Planes* planes, std::string* found
   return false;
 }
 
-bool png_size(FILE* file, int* width, int* height) {
+bool png_size(const std::string& file, int* width, int* height) {
   // Signature, then the chunk IHDR, which begins with width and height.
-  png_byte head[24];
-  if (std::fread(head, 1, sizeof head, file) != sizeof head) return false;
+  if (file.size() < 24) return false;
+  const png_byte* head = reinterpret_cast<const png_byte*>(file.data());
   const png_uint_32 w = png_get_uint_32(head + 16), h = png_get_uint_32(head + 20);
   *width = int(w);
   *height = int(h);
@@ -163,10 +177,10 @@ bool png_size(FILE* file, int* width, int* height) {
          h <= PNG_UINT_31_MAX;
 }
 
-bool encode_png(const unsigned char* rows, int width, int height, int channels, FILE* file,
+bool encode_png(const unsigned char* rows, int width, int height, int channels, std::string* bytes,
                 std::string* found) {
   PngState state(true);
-  if (encode(rows, width, height, channels, file, &state)) return true;
+  if (encode(rows, width, height, channels, bytes, &state)) return true;
   *found = state.message;
   return false;
 }

@@ -93,30 +93,6 @@ double area_of(const TopoDS_Face& face) {
   return std::abs(properties.Mass());
 }
 
-const char* type_of(const TopoDS_Face& face) {
-  switch (BRepAdaptor_Surface(face, /*Restriction=*/false).GetType()) {
-    case GeomAbs_Plane:
-      return "Plane";
-    case GeomAbs_Cylinder:
-      return "Cylinder";
-    case GeomAbs_Cone:
-      return "Cone";
-    case GeomAbs_Sphere:
-      return "Sphere";
-    case GeomAbs_Torus:
-      return "Torus";
-    case GeomAbs_BezierSurface:
-    case GeomAbs_BSplineSurface:
-      return "BSpline";
-    case GeomAbs_SurfaceOfRevolution:
-      return "Revolution";
-    case GeomAbs_SurfaceOfExtrusion:
-      return "Extrusion";
-    default:
-      return "Other";
-  }
-}
-
 // In a child: where edges leave their face, the mesher may turn for ever. Ten times what faces
 // take.
 TopoDS_Shape with_triangles(const TopoDS_Shape& shape, double deflection, const std::string& name) {
@@ -145,7 +121,6 @@ SurfaceMesh tessellate(const Brep& brep, const UnitFrame& frame, double deflecti
   const double sliver = 1e-8 / (frame.scale * frame.scale);
   for (int f = 1; f <= faces.Extent(); ++f) {
     const TopoDS_Face face = TopoDS::Face(faces(f));
-    mesh.types.push_back(type_of(face));
     if (!add_face(face, f - 1, frame, &mesh) && area_of(face) > sliver) ++bare;
   }
   if (bare > 0)

@@ -42,7 +42,6 @@ struct SurfaceMesh {
   std::vector<Eigen::Vector3f> normals;          ///< one per point, unit, along the triangles' side
   std::vector<std::array<unsigned, 3>> corners;  ///< one per triangle, into points
   std::vector<int> face;                         ///< one per triangle: which face of the B-rep
-  std::vector<std::string> types;  ///< one per face: "Plane", "Cylinder", ..., "Other"
 };
 
 /// `deflection`: largest distance of triangles from the surface, unit lengths, > 0.

@@ -11,11 +11,10 @@
 namespace sketchsplat {
 namespace {
 
-const PartMaker& maker_of(const std::string& name) {
-  for (const auto* parts : {&prismatic_parts(), &plate_parts(), &thin_parts(), &turned_parts(),
-                            &freeform_parts(), &cast_parts()})
-    for (const PartMaker& part : *parts)
-      if (name == part.name) return part;
+TopoDS_Shape made(const std::string& name, const Dimensions& d) {
+  for (const PartMakers* parts :
+       {&prismatic_parts(), &plate_parts(), &turned_parts(), &smooth_parts()})
+    if (const auto found = parts->find(name); found != parts->end()) return found->second(d);
   throw std::logic_error("nothing makes the part " + name);
 }
 
@@ -30,15 +29,14 @@ Brep make_part(const std::string& name, std::uint64_t seed, const PartValues& va
   }
   const std::string wrong = wrong_values(*spec, values);
   if (!wrong.empty()) throw InputError(name, "a parameter and a value that it can have", wrong);
+  const std::string what = "the part " + name + " of seed " + std::to_string(seed);
   try {
-    const TopoDS_Shape shape = maker_of(name).make(draw(*spec, seed, values));
+    const TopoDS_Shape shape = made(name, in_model_units(*spec, draw(*spec, seed, values)));
     if (shape.IsNull() || !BRepCheck_Analyzer(shape).IsValid())
-      throw std::logic_error("the part " + name + " of seed " + std::to_string(seed) +
-                             " is no valid solid");
+      throw std::logic_error(what + " is no valid solid");
     return {std::make_shared<const TopoDS_Shape>(shape)};
   } catch (const Standard_Failure& failure) {
-    throw std::logic_error("the part " + name + " of seed " + std::to_string(seed) +
-                           " cannot be made: " + failure.GetMessageString());
+    throw std::logic_error(what + " cannot be made: " + failure.GetMessageString());
   }
 }
 

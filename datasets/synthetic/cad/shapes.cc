@@ -6,7 +6,6 @@
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
-#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
@@ -57,6 +56,10 @@ Handle(Geom_BSplineCurve) interpolate(const std::vector<Vector3d>& points, bool 
 TopoDS_Shape box(const Vector3d& corner, const Vector3d& size) {
   return BRepPrimAPI_MakeBox(pnt(corner), size.x(), size.y(), size.z());
 }
+TopoDS_Shape box(const Vector3d& size) { return box(Vector3d::Zero(), size); }
+TopoDS_Shape box(const Dimensions& d) {
+  return box(Vector3d(d["length"], d["width"], d["height"]));
+}
 TopoDS_Shape cylinder(const Vector3d& base, const Vector3d& along, double radius) {
   return BRepPrimAPI_MakeCylinder(axis(base, along), radius, along.norm());
 }
@@ -71,12 +74,6 @@ TopoDS_Shape quarter_torus(double ring, double radius) {
 }
 TopoDS_Shape prism(const TopoDS_Face& face, const Vector3d& along) {
   return BRepPrimAPI_MakePrism(face, vec(along));
-}
-TopoDS_Shape prism(const std::vector<Vector3d>& polygon, const Vector3d& along) {
-  BRepBuilderAPI_MakePolygon wire;
-  for (const Vector3d& p : polygon) wire.Add(pnt(p));
-  wire.Close();
-  return prism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), along);
 }
 TopoDS_Shape pyramid(const Vector3d& apex, const TopoDS_Face& base) {
   BRepOffsetAPI_ThruSections maker(/*isSolid=*/true, /*ruled=*/true);
@@ -101,6 +98,9 @@ TopoDS_Shape fuse(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   ShapeUpgrade_UnifySameDomain unify(BRepAlgoAPI_Fuse(a, b).Shape());
   unify.Build();
   return unify.Shape();
+}
+TopoDS_Shape drilled(const TopoDS_Shape& shape, double x, double y, double height, double radius) {
+  return cut(shape, cylinder({x, y, -1}, {0, 0, height + 2}, radius));
 }
 
 std::vector<TopoDS_Edge> edges_where(
@@ -166,6 +166,34 @@ TopoDS_Face Outline::face() {
   BRepBuilderAPI_MakeWire wire;
   for (const TopoDS_Edge& edge : edges_) wire.Add(edge);
   return BRepBuilderAPI_MakeFace(wire.Wire(), /*OnlyPlane=*/true).Face();
+}
+TopoDS_Face profile(const Vector3d& right, const Vector3d& up, const std::vector<To>& places) {
+  const int n = int(places.size());
+  const auto at = [&](int i) -> Vector3d { return right * places[i % n].x + up * places[i % n].y; };
+  Outline outline(at(0));
+  for (int i = 1; i < n; ++i) {
+    if (places[i].through)
+      outline.arc(at(i), at(i + 1)), ++i;
+    else
+      outline.line(at(i));
+  }
+  return outline.face();
+}
+TopoDS_Shape along_x(const std::vector<To>& places, double length) {
+  return prism(profile(Vector3d::UnitY(), Vector3d::UnitZ(), places), {length, 0, 0});
+}
+TopoDS_Shape along_y(const std::vector<To>& places, double length) {
+  return prism(profile(Vector3d::UnitX(), Vector3d::UnitZ(), places), {0, length, 0});
+}
+TopoDS_Shape along_z(const std::vector<To>& places, double z, double length) {
+  const TopoDS_Shape shape =
+      prism(profile(Vector3d::UnitX(), Vector3d::UnitY(), places), {0, 0, length});
+  gp_Trsf lift;
+  lift.SetTranslation(gp_Vec(0, 0, z));
+  return BRepBuilderAPI_Transform(shape, lift, /*Copy=*/true);
+}
+TopoDS_Shape lathed(const std::vector<To>& places) {
+  return revolve(profile(Vector3d::UnitX(), Vector3d::UnitZ(), places));
 }
 TopoDS_Face blob(const std::vector<Vector3d>& points) {
   const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(interpolate(points, true)).Edge();

@@ -113,9 +113,8 @@ class Collector {
  public:
   explicit Collector(const UnitFrame& frame) : frame_(frame) {}
 
-  // Adds the edge if it is sharp, or if it is not: what is asked for.
-  void add(const TopoDS_Edge& edge, const std::vector<Side>& sides, double smooth_angle_deg,
-           bool sharp) {
+  // Adds the edge if it is sharp.
+  void add(const TopoDS_Edge& edge, const std::vector<Side>& sides, double smooth_angle_deg) {
     const BRepAdaptor_Curve adaptor(edge);
     const ParametricCurve curve = in_unit_frame(adaptor, frame_);
     const std::vector<double> breaks = derivative_breaks(adaptor);
@@ -124,7 +123,7 @@ class Collector {
     out.points = polyline(curve, breaks, kDeflection, kSpacing, &parameters);
     const TopoDS_Vertex first = TopExp::FirstVertex(edge), last = TopExp::LastVertex(edge);
     out.closed = first.IsNull() || first.IsSame(last);
-    if ((look_around(sides, parameters, &out) >= smooth_angle_deg) != sharp) return;
+    if (look_around(sides, parameters, &out) < smooth_angle_deg) return;
     add_strokes(adaptor, curve, breaks, first, last, &out);
     truth_.curves.push_back(std::move(out));
   }
@@ -203,7 +202,9 @@ class Collector {
   std::vector<int> node_of_vertex_;
 };
 
-Truth collect(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg, bool sharp) {
+}  // namespace
+
+Truth sharp_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg) {
   TopTools_IndexedDataMapOfShapeListOfShape faces_of_edge;
   TopExp::MapShapesAndUniqueAncestors(*brep.shape, TopAbs_EDGE, TopAbs_FACE, faces_of_edge);
   Collector collector(frame);
@@ -211,19 +212,9 @@ Truth collect(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg,
     const TopoDS_Edge edge = TopoDS::Edge(faces_of_edge.FindKey(i));
     const std::vector<Side> sides = sides_of(edge, faces_of_edge(i));
     if (sides.empty() || BRep_Tool::Degenerated(edge)) continue;
-    collector.add(edge, sides, smooth_angle_deg, sharp);
+    collector.add(edge, sides, smooth_angle_deg);
   }
   return collector.take();
-}
-
-}  // namespace
-
-Truth sharp_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg) {
-  return collect(brep, frame, smooth_angle_deg, true);
-}
-
-Truth smooth_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg) {
-  return collect(brep, frame, smooth_angle_deg, false);
 }
 
 Truth transformed(const Truth& truth, double scale, const Vector3d& shift) {

@@ -32,9 +32,6 @@ struct Truth {
 /// continue one another. B-splines become cubics that share nodes, error below 1e-5.
 Truth sharp_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg);
 
-/// The other edges of the B-rep: seams and tangent transitions, which are no truth.
-Truth smooth_edges(const Brep& brep, const UnitFrame& frame, double smooth_angle_deg);
-
 /// The same truth at x * scale + shift.
 Truth transformed(const Truth& truth, double scale, const Eigen::Vector3d& shift);
 

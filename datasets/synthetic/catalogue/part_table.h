@@ -18,12 +18,8 @@ namespace sketchsplat {
 struct PartParameter {
   std::string name;
   std::string unit;  ///< "mm", "deg", "of longest side", "of width", ...; "count": a whole number
-  double low, high;
-  double least, most;
-
-  PartParameter(std::string name, std::string unit, double low, double high);
-  PartParameter(std::string name, std::string unit, double low, double high, double least,
-                double most);
+  double low = 0, high = 0;
+  double least = 0, most = 0;
 };
 
 struct PartSpec {
@@ -61,6 +57,10 @@ class Dimensions {
 /// Drawn from `seed` (same seed, same dimensions), then `values` instead of what was drawn: the
 /// other dimensions stay what they were. `values` must not be wrong_values().
 Dimensions draw(const PartSpec& spec, std::uint64_t seed, const PartValues& values);
+
+/// Lengths in millimetres, whatever they are relative to, and angles in radians. What is no length
+/// ("of the pitch", %, counts) stays as it is.
+Dimensions in_model_units(const PartSpec& spec, const Dimensions& dimensions);
 
 /// All parts, or one, with their parameters and ranges: a table for the terminal.
 std::string part_listing(const std::vector<PartSpec>& specs);

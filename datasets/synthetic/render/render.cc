@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "datasets/io/float_image_io.h"
+#include "datasets/io/image_io.h"
 #include "datasets/synthetic/render/noise.h"
 #include "datasets/types/parallel.h"
 

@@ -64,24 +64,21 @@ bool is_step_file(const std::string& part) {
 struct Object {
   SurfaceMesh surface;
   Truth truth;
-  std::shared_ptr<const CadModel> cad;
+  Brep brep;  // empty for a mesh
+  UnitFrame frame;
 };
 
 Object make_object(const SynthesizeOptions& options) {
   if (is_mesh_file(options.part)) {
     MeshPart part = make_mesh_part(read_mesh(options.part), options.crease_deg, options.part);
-    const CadModel cad{part.frame, {}, part.surface, {}};
-    return {std::move(part.surface), std::move(part.truth), std::make_shared<CadModel>(cad)};
+    return {std::move(part.surface), std::move(part.truth), {}, part.frame};
   }
   const Brep brep = is_step_file(options.part)
                         ? read_step(options.part)
                         : make_part(options.part, options.seed, options.parameters);
   const UnitFrame frame = unit_frame(brep, options.part);
-  constexpr double kCoarse = 1e-3;  // about as fine as the meshes of ABC
-  const CadModel cad{frame, smooth_edges(brep, frame, options.smooth_angle_deg),
-                     tessellate(brep, frame, kCoarse, options.part), brep};
   return {tessellate(brep, frame, options.deflection, options.part),
-          sharp_edges(brep, frame, options.smooth_angle_deg), std::make_shared<CadModel>(cad)};
+          sharp_edges(brep, frame, options.smooth_angle_deg), brep, frame};
 }
 
 Eigen::Matrix3Xd all_points(const Truth& truth) {
@@ -113,7 +110,7 @@ SyntheticScene synthesize(const SynthesizeOptions& given) {
   SynthesizeOptions options = given;
   const bool photographs = options.render.style == Style::kPhoto;
   options.rig = resolved(options.rig, photographs);
-  auto [surface, truth, cad] = make_object(options);
+  auto [surface, truth, brep, frame] = make_object(options);
   if (truth.curves.empty()) throw InputError(options.part, "a part with sharp edges", "none");
   const Tracer tracer(surface);
   std::vector<View> unit_views = make_rig(options.rig, options.seed);
@@ -139,7 +136,8 @@ SyntheticScene synthesize(const SynthesizeOptions& given) {
           options.render.clutter ? clutter_behind(unit_views, options.seed) : nullptr,
           photo,
           lift,
-          cad};
+          brep,
+          frame};
 }
 
 RenderedView render_view(const SyntheticScene& scene, int view) {
@@ -148,8 +146,8 @@ RenderedView render_view(const SyntheticScene& scene, int view) {
   if (scene.photo) {
     RenderedView out;
     const PhotoShader shader(*scene.photo, {scene.options.photo.surface, seed}, scene.lift);
-    out.picture = paint_photo(*scene.photo, shader, scene.unit_curves, scene.unit_views[view], seed,
-                              view);
+    out.picture =
+        paint_photo(*scene.photo, shader, scene.unit_curves, scene.unit_views[view], seed, view);
     out.mask = std::move(out.picture.alpha);
     expose_photo(options, seed, view, &out.picture);
     return out;

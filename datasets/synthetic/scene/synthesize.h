@@ -37,14 +37,6 @@ struct SynthesizeOptions {
   std::string outputs = "all";  ///< what is written beside the images: see parse_outputs
 };
 
-/// What else is known about a part, for truth in the units of the CAD file.
-struct CadModel {
-  UnitFrame frame;   ///< CAD units to the unit frame
-  Truth smooth;      ///< seams and tangent transitions, unit frame; empty for a mesh
-  SurfaceMesh mesh;  ///< coarser than what is rendered, unit frame
-  Brep brep;         ///< CAD units; empty for a mesh
-};
-
 /// A part, its true edges and its cameras. The object's box is centred at (0.5, 0.5, 0.5) extents.
 struct SyntheticScene {
   SynthesizeOptions options;               ///< the rig resolved()
@@ -57,7 +49,8 @@ struct SyntheticScene {
   std::shared_ptr<const Clutter> clutter;  ///< what stands behind it; null if nothing
   std::shared_ptr<const PhotoWorld> photo;  ///< of Style::kPhoto; unit frame
   double lift = 0;  ///< how far rays that leave the surface start above it, unit lengths
-  std::shared_ptr<const CadModel> cad;
+  Brep brep;        ///< in units of its own; empty for a mesh
+  UnitFrame frame;  ///< from these to the unit frame
 };
 
 /// Throws InputError if there is no such part or file, if it holds no sharp edge, or if an option
@@ -87,7 +80,6 @@ Picture render(const SyntheticScene& scene, int view);  ///< its picture alone
 ///     "visible_views": [n, ...] one per point, "dihedral_deg"},
 ///   groundtruth/sketch.json: the same edges as a sketch graph;
 ///   groundtruth/part.step: the part itself in world units (not of a mesh);
-///   groundtruth/abc/: the same edges as ABC ships them, in CAD units: see write_abc.h;
 /// and of the outputs that were asked for, whatever happens to the image:
 ///   mask/<k>.png, depth/<k>.exr (channel Z, 32 bits), normal/<k>.exr (R, G, B = x, y, z, 16 bits),
 ///   as RenderedView says, edges_visible/<k>.png and .json: as draw() and to_json() of the visible

@@ -55,9 +55,9 @@ std::string points_text(const std::vector<View>& views, const std::vector<TiePoi
 void write_colmap(const std::vector<View>& views, const std::vector<TiePoint>& points,
                   const std::string& folder) {
   const ColmapText model = colmap_text(views, sights_of(views, points));
-  write_text(folder + "/cameras.txt", model.cameras);
-  write_text(folder + "/points3D.txt", model.points + points_text(views, points));
-  write_text(folder + "/images.txt", model.images);
+  write_whole(folder + "/cameras.txt", model.cameras);
+  write_whole(folder + "/points3D.txt", model.points + points_text(views, points));
+  write_whole(folder + "/images.txt", model.images);
 }
 
 }  // namespace sketchsplat

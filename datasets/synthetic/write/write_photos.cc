@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "datasets/io/float_image_io.h"
 #include "datasets/io/image_io.h"
 #include "datasets/synthetic/photo/tie_points.h"
 #include "datasets/synthetic/render/degrade.h"
@@ -107,7 +106,7 @@ void write_photos(const SyntheticScene& scene, const std::string& folder) {
   const bool err = error > 0 || !o.photo.state_lens;
   write_model(stated, err ? triangulated(points, stated) : points, folder + "/sparse/0");
   if (err) write_model(scene.views, points, folder + "/true");
-  write_text(folder + "/scene.json", json_text(facts(scene, error), 1));
+  write_whole(folder + "/scene.json", json_text(facts(scene, error), 1));
 }
 
 }  // namespace sketchsplat

@@ -67,7 +67,7 @@ void write_outputs(const SyntheticScene& scene, int k, const RenderedView& view,
       visible_edges(scene.unit_views[k], scene.tracer, scene.unit_curves, scene.lift);
   const Camera& camera = scene.unit_views[k].camera;
   write_png(file("edges_visible", ".png"), draw(edges, camera.width, camera.height));
-  write_text(file("edges_visible", ".json"), to_json(edges));
+  write_whole(file("edges_visible", ".json"), to_json(edges));
 }
 
 void make_folders(const std::string& folder, const Outputs& outputs) {
@@ -98,7 +98,7 @@ void write_scene(const SyntheticScene& scene, const std::string& folder) {
     write_outputs(scene, k, view, folder, outputs);
   });
   write_truth(scene, folder);
-  write_text(folder + "/meta_data.json", json_text(meta_data(scene), 1));
+  write_whole(folder + "/meta_data.json", json_text(meta_data(scene), 1));
 }
 
 }  // namespace sketchsplat

@@ -2,11 +2,9 @@
 #include "datasets/synthetic/write/write_truth.h"
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "datasets/synthetic/write/write_abc.h"
 #include "datasets/synthetic/write/write_part.h"
 #include "datasets/types/errors.h"
 #include "sketches/io/io.h"
@@ -37,17 +35,6 @@ void make_folder(const std::string& path) {
   if (error) throw OutputError(path, error.message());
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw OutputError(path, "no way to write there");
-  std::error_code error;
-  fs::rename(temporary, path, error);
-  if (error) throw OutputError(path, error.message());
-}
-
 json json_rows(const Eigen::MatrixXd& m) {
   json out = json::array();
   for (int r = 0; r < m.rows(); ++r) {
@@ -71,17 +58,13 @@ void write_image(const std::string& path, Fate fate,
 }
 
 void write_truth(const SyntheticScene& scene, const std::string& folder) {
-  make_folder(folder + "/groundtruth/abc/feat");
-  make_folder(folder + "/groundtruth/abc/obj");
-  write_text(folder + "/groundtruth/gt.json", json_text(ground_truth(scene.truth)));
+  make_folder(folder + "/groundtruth");
+  write_whole(folder + "/groundtruth/gt.json", json_text(ground_truth(scene.truth)));
   std::ostringstream sketch;
   write_sketch_json(sketch, scene.truth.sketch);
-  write_text(folder + "/groundtruth/sketch.json", sketch.str());
-  if (scene.cad && scene.cad->brep.shape)
-    write_part(scene.cad->brep, scene.cad->frame, scene.options.extent,
-               folder + "/groundtruth/part.step");
-  for (const auto& [name, text] : abc_files(scene))
-    write_text(folder + "/groundtruth/abc/" + name, text);
+  write_whole(folder + "/groundtruth/sketch.json", sketch.str());
+  if (scene.brep.shape)
+    write_part(scene.brep, scene.frame, scene.options.extent, folder + "/groundtruth/part.step");
 }
 
 }  // namespace sketchsplat

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "datasets/io/write_whole.h"
 #include "datasets/synthetic/render/degrade.h"
 #include "datasets/synthetic/scene/synthesize.h"
 
@@ -15,9 +16,6 @@ namespace sketchsplat {
 
 /// A folder and those above it.
 void make_folder(const std::string& path);
-
-/// Whole or not at all.
-void write_text(const std::string& path, const std::string& text);
 
 /// One list a row.
 nlohmann::json json_rows(const Eigen::MatrixXd& m);
