@@ -22,7 +22,8 @@ struct Header {
 
 bool read_header(const Codec& codec, const std::string& file, Header* header) {
   return tjDecompressHeader3(codec.get(), bytes_of(file), file.size(), &header->width,
-                             &header->height, &header->subsampling, &header->colours) == 0;
+                             &header->height, &header->subsampling, &header->colours) == 0 ||
+         (tjGetErrorCode(codec.get()) == TJERR_WARNING && header->width > 0);
 }
 
 bool contains(const std::string& text, const char* part) {

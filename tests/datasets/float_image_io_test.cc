@@ -82,26 +82,5 @@ TEST(Exr, AHeaderThatClaimsMoreThanTheFileHasIsRefusedBeforeMemoryIsTaken) {
   EXPECT_THAT(refused("\xff\xff\xff\xff"), testing::HasSubstr("claims more than"));
 }
 
-TEST(Jpeg, LowerQualityLosesMoreAndAlphaNothing) {
-  Picture picture;
-  picture.red = Image<float>(64, 64, 0.2f);
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x)
-      if (3 * x > y + 60) picture.red.at(x, y) = 0.8f;
-  picture.green = picture.blue = picture.alpha = picture.red;
-  const auto loss = [&](int quality) {
-    const Picture out = through_jpeg(picture, quality);
-    EXPECT_EQ(out.alpha.data, picture.alpha.data);
-    double sum = 0;
-    for (size_t i = 0; i < out.red.data.size(); ++i)
-      sum += std::pow(out.red.data[i] - picture.red.data[i], 2);
-    return std::sqrt(sum / double(out.red.data.size()));
-  };
-  const double best = loss(100), good = loss(80), bad = loss(10);
-  EXPECT_LT(best, 0.005);
-  EXPECT_LT(1.5 * best, good);
-  EXPECT_LT(1.5 * good, bad);
-}
-
 }  // namespace
 }  // namespace sketchsplat

@@ -201,9 +201,9 @@ size_t views_kept(double fifth, double unit) {
   for (int k = 0; k < 5; ++k) {
     const std::string name = std::to_string(k) + ".png";
     write_image(folder, "color/" + name);
-    frames += (k ? "," : "") + abc_frame(name, "[[1,0,0," + std::to_string(x[k] * unit) +
-                                                   "],[0,1,0," + std::to_string(y[k] * unit) +
-                                                   "],[0,0,1,0],[0,0,0,1]]");
+    frames += (k ? "," : "") +
+              abc_frame(name, "[[1,0,0," + std::to_string(x[k] * unit) + "],[0,1,0," +
+                                  std::to_string(y[k] * unit) + "],[0,0,1,0],[0,0,0,1]]");
   }
   folder.write("meta_data.json", abc_scene(frames));
   const Scene scene = open_scene(folder.path());

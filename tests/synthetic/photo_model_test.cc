@@ -15,10 +15,10 @@
 namespace sketchsplat {
 namespace {
 
-using test::small;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+using test::small;
 
 TEST(PhotographModels, ModelIsReadBackAsItIs) {
   const TempFolder folder;

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <Eigen/Geometry>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "datasets/synthetic/cad/parts.h"
 #include "datasets/synthetic/scene/synthesize.h"
+#include "tests/datasets/temp_folder.h"
 
 namespace sketchsplat {
 namespace {
@@ -136,75 +133,18 @@ TEST(Render, TrianglesStayWithinTheDeflectionOfACylinder) {
   EXPECT_LT(sag, 2.1e-5);
 }
 
-// A box is convex: an edge is seen if one of its two faces looks at the camera.
-TEST(Visibility, EdgesOfABoxAreSeenFromTheSidesOfTheirFaces) {
-  SynthesizeOptions options = small("box");
-  options.rig.views = 40;
-  options.rig.resolution = 800;
-  const SyntheticScene scene = synthesize(options);
-  Eigen::AlignedBox3d box;
-  for (int n = 0; n < 8; ++n) box.extend(Vector3d(scene.truth.sketch.nodes.col(n)));
-  for (const TruthCurve& curve : scene.truth.curves) {
-    const Vector3d middle = curve.points.col(curve.points.cols() / 2);
-    int expected = 0;
-    for (const View& view : scene.views) {
-      const Vector3d eye = view.center_in_world();
-      bool seen = false;
-      for (int axis = 0; axis < 3; ++axis) {
-        seen |= std::abs(middle[axis] - box.max()[axis]) < 1e-9 && eye[axis] > box.max()[axis];
-        seen |= std::abs(middle[axis] - box.min()[axis]) < 1e-9 && eye[axis] < box.min()[axis];
-      }
-      expected += seen;
-    }
-    EXPECT_EQ(curve.visible_views[curve.points.cols() / 2], expected);
-  }
-}
-
-std::map<std::string, std::string> files_below(const std::string& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    std::ostringstream text;
-    text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    files[fs::relative(entry.path(), folder).string()] = text.str();
-  }
-  return files;
-}
-
-std::map<std::string, std::string> written(const SynthesizeOptions& options, int threads) {
-  const std::string folder = testing::TempDir() + "/synthetic_scene";
-  fs::remove_all(folder);
-  omp_set_num_threads(threads);
-  write_scene(synthesize(options), folder);
-  auto files = files_below(folder);
-  fs::remove_all(folder);
-  return files;
-}
-
-TEST(WriteScene, SameSeedSameBytesForAnyNumberOfThreads) {
-  SynthesizeOptions options = small("box-hole");
-  options.render.noise = 3;
-  options.render.exposure = 0.1;
-  const auto one = written(options, 1);
-  // Three pictures, meta_data.json, gt.json, sketch.json, part.step, three of ABC.
-  ASSERT_EQ(one.size(), 10u);
-  EXPECT_EQ(one, written(options, 4));
-  options.seed = 2;
-  const auto other = written(options, 4);
-  for (const auto& file : one) EXPECT_NE(file.second, other.at(file.first)) << file.first;
-}
-
 TEST(WriteScene, LayoutIsThatOfAbcNef) {
-  const auto files = written(small("box-hole"), 2);
-  const auto meta = nlohmann::json::parse(files.at("meta_data.json"));
+  const TempFolder folder;
+  write_scene(synthesize(small("box-hole")), folder.path());
+  const auto meta = nlohmann::json::parse(bytes_of(folder.file("meta_data.json")));
   for (const char* key : {"camera_model", "height", "width", "worldtogt", "scene_box", "frames"})
     EXPECT_TRUE(meta.contains(key)) << key;
   ASSERT_EQ(meta["frames"].size(), 3u);
   EXPECT_EQ(meta["frames"][2]["rgb_path"], "2_colors.png");
-  EXPECT_EQ(files.count("color/2_colors.png"), 1u);
+  EXPECT_TRUE(fs::exists(folder.file("color/2_colors.png")));
   EXPECT_EQ(meta["frames"][0]["camtoworld"].size(), 4u);
   EXPECT_EQ(meta["frames"][0]["intrinsics"][0][2], 47.5);
-  const auto truth = nlohmann::json::parse(files.at("groundtruth/gt.json"));
+  const auto truth = nlohmann::json::parse(bytes_of(folder.file("groundtruth/gt.json")));
   ASSERT_EQ(truth.size(), 14u);
   for (const auto& curve : truth) EXPECT_EQ(curve["points"].size(), curve["visible_views"].size());
 }
@@ -287,19 +227,6 @@ TEST(Render, BlurKeepsTheLightAndWidensTheOutline) {
   for (float a : sharp.alpha.data) before += a;
   for (float a : soft.alpha.data) after += a;
   EXPECT_NEAR(after / before, 1, 1e-3);
-}
-
-TEST(Parts, EveryPartHasSoundTruthForSeveralSeeds) {
-  for (const std::string& name : part_names())
-    for (std::uint64_t seed : {1, 2, 77}) {
-      const Brep brep = make_part(name, seed);
-      const Truth truth = sharp_edges(brep, unit_frame(brep, name), 1.0);
-      EXPECT_FALSE(truth.curves.empty()) << name;
-      EXPECT_TRUE(validate(truth.sketch).empty())
-          << name << " " << seed << ": " << validate(truth.sketch)[0];
-      for (const TruthCurve& curve : truth.curves)
-        EXPECT_GT(curve.dihedral_deg, 5) << name << " has an edge that nobody would see";
-    }
 }
 
 TEST(Step, RealPartsLoadWithSoundTruth) {

@@ -103,10 +103,6 @@ TEST(Truth, SeamOfACylinderIsNoEdgeAndAnObliqueCutIsAnEllipse) {
   EXPECT_EQ(truth.sketch.size(), 2);
 }
 
-TEST(Truth, DihedralAnglesOfABoxAreRight) {
-  for (const TruthCurve& curve : truth_of("box").curves) EXPECT_NEAR(curve.dihedral_deg, 90, 1e-6);
-}
-
 // Distance of a point from the strokes of one curve.
 double distance_to_curve(const Truth& truth, const std::vector<Eigen::Matrix3Xd>& lines, int curve,
                          const Vector3d& x) {

@@ -34,10 +34,6 @@ struct CurveShape {
 /// Elliptic only if it turns by half a radian or more: shorter curves of any kind lie on ellipses.
 CurveShape recognise(const ParametricCurve& curve, double tolerance);
 
-/// The same for points in order along a curve (3 x N), as many as it takes to tell. `least_turn`:
-/// less than half a radian if it is known to be an ellipse [rad].
-CurveShape recognise(const Eigen::Matrix3Xd& points, double tolerance, double least_turn = 0.5);
-
 /// Parameters first = t0 < t1 < ... < last between which the cubic Hermite interpolant stays within
 /// `tolerance` of the curve. `breaks`: inner parameters where its derivative may jump, ascending.
 std::vector<double> hermite_knots(const ParametricCurve& curve, const std::vector<double>& breaks,
