@@ -16,11 +16,11 @@ const unsigned char* bytes_of(const std::string& file) {
   return reinterpret_cast<const unsigned char*>(file.data());
 }
 
-struct Header {
+struct JpegHeader {
   int width = 0, height = 0, subsampling = 0, colours = 0;
 };
 
-bool read_header(const Codec& codec, const std::string& file, Header* header) {
+bool read_header(const Codec& codec, const std::string& file, JpegHeader* header) {
   return tjDecompressHeader3(codec.get(), bytes_of(file), file.size(), &header->width,
                              &header->height, &header->subsampling, &header->colours) == 0 ||
          (tjGetErrorCode(codec.get()) == TJERR_WARNING && header->width > 0);
@@ -64,7 +64,7 @@ void split(const std::vector<unsigned char>& rows, Planes* planes) {
 
 bool decode_jpeg(const std::string& file, int denominator, Planes* planes, std::string* found) {
   const Codec codec(tjInitDecompress(), tjDestroy);
-  Header header;
+  JpegHeader header;
   if (!read_header(codec, file, &header)) {
     *found = tjGetErrorStr2(codec.get());
     if (contains(*found, "subsampling")) found->clear();
@@ -107,7 +107,7 @@ bool encode_jpeg(const unsigned char* rows, int width, int height, int quality, 
 
 bool jpeg_size(const std::string& file, int* width, int* height) {
   const Codec codec(tjInitDecompress(), tjDestroy);
-  Header header;
+  JpegHeader header;
   if (!read_header(codec, file, &header)) return false;
   *width = header.width;
   *height = header.height;

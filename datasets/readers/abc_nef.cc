@@ -1,26 +1,12 @@
 // SPDX-License-Identifier: MIT
 // EMAP's layout (ABC-NEF_Edge): meta_data.json, color/, edge_<detector>/.
-#include <filesystem>
-
 #include "datasets/readers/format.h"
 #include "datasets/readers/frame.h"
-#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
-std::string scene_file(const std::string& folder) {
-  return (std::filesystem::path(folder) / "meta_data.json").string();
-}
-
-bool is_marked(const std::string& folder) {
-  std::error_code none;
-  return std::filesystem::exists(scene_file(folder), none);
-}
-
-void read(const SceneSource& source, Scene* scene) {
-  const std::string& folder = source.folder;
-  const JsonValue root = load_json(scene_file(folder));
+void read_abc_nef(const SceneSource& source, const JsonValue& root, Scene* scene) {
   if (root.has("worldtogt")) {
     scene->gt_from_world = root["worldtogt"].matrix(4, 4);
     if (!scene->gt_from_world.allFinite()) root["worldtogt"].complain("finite numbers");
@@ -32,7 +18,7 @@ void read(const SceneSource& source, Scene* scene) {
   for (const JsonValue& entry : frames_of(root)) {
     Frame frame;
     frame.name = entry["rgb_path"].text();
-    find_image_of(source, folder + "/color", frame.name, &frame);
+    find_image_of(source, source.folder + "/color", frame.name, &frame);
     frame.size = size;
     frame.intrinsics = entry["intrinsics"].matrix(3, 3);
     frame.world_from_cam = entry["camtoworld"].matrix(4, 4);
@@ -42,6 +28,6 @@ void read(const SceneSource& source, Scene* scene) {
 
 }  // namespace
 
-const SceneFormat kAbcNefFormat = {"abc-nef", "meta_data.json", is_marked, read};
+const SceneFormat kAbcNefFormat = {"abc-nef", "meta_data.json", read_abc_nef};
 
 }  // namespace sketchsplat

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_marked(const std::string& folder) {
+bool has_model_of_colmap(const std::string& folder) {
   std::error_code none;
   return fs::is_directory(folder + "/sparse", none) || fs::exists(folder + "/cameras.bin", none) ||
          fs::exists(folder + "/cameras.txt", none);
@@ -118,7 +118,7 @@ void warn_of_images_without_pose(const std::string& images, bool deep, const Col
   warn_of("images without a pose", without, scene);
 }
 
-void read(const SceneSource& source, Scene* scene) {
+void read_colmap(const SceneSource& source, Scene* scene) {
   const std::string& folder = source.folder;
   const ColmapModel model = read_colmap_model(find_model(folder, scene));
   check_frame_count(model.images_path, model.images.size());
@@ -157,6 +157,7 @@ void read(const SceneSource& source, Scene* scene) {
 
 }  // namespace
 
-const SceneFormat kColmapFormat = {"colmap", "sparse/ or cameras.{bin,txt}", is_marked, read};
+const SceneFormat kColmapFormat = {"colmap", "sparse/ or cameras.{bin,txt}", nullptr,
+                                   has_model_of_colmap, read_colmap};
 
 }  // namespace sketchsplat

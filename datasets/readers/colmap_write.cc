@@ -32,7 +32,8 @@ std::string camera_line(int id, const View& view) {
     values.insert(values.end(), terms.begin(), terms.end());
   };
   switch (model) {
-    case LensModel::kPinhole: break;
+    case LensModel::kPinhole:
+      break;
     case LensModel::kSimpleRadial:
       values.erase(values.begin());
       lens("SIMPLE_RADIAL", {k.k1});
@@ -41,11 +42,15 @@ std::string camera_line(int id, const View& view) {
       values.erase(values.begin());
       lens("RADIAL", {k.k1, k.k2});
       break;
-    case LensModel::kOpencv: lens("OPENCV", {k.k1, k.k2, k.p1, k.p2}); break;
+    case LensModel::kOpencv:
+      lens("OPENCV", {k.k1, k.k2, k.p1, k.p2});
+      break;
     case LensModel::kFullOpencv:
       lens("FULL_OPENCV", {k.k1, k.k2, k.p1, k.p2, k.k3, k.k4, k.k5, k.k6});
       break;
-    case LensModel::kOpencvFisheye: lens("OPENCV_FISHEYE", {k.k1, k.k2, k.k3, k.k4}); break;
+    case LensModel::kOpencvFisheye:
+      lens("OPENCV_FISHEYE", {k.k1, k.k2, k.k3, k.k4});
+      break;
   }
   std::string text = std::to_string(id) + " " + name + " " + std::to_string(c.width) + " " +
                      std::to_string(c.height);

@@ -19,10 +19,16 @@ namespace fs = std::filesystem;
 constexpr const SceneFormat* kFormats[] = {&kAbcNefFormat, &kNerfFormat, &kNerfstudioFormat,
                                            &kColmapFormat};
 
+bool is_marked(const SceneFormat& format, const std::string& folder) {
+  std::error_code none;
+  return format.is_marked ? format.is_marked(folder)
+                          : fs::exists(fs::path(folder) / format.marker, none);
+}
+
 const SceneFormat& find_format(const std::string& folder, const std::string& name) {
   std::string known, markers;
   for (const SceneFormat* format : kFormats) {
-    if (name.empty() ? format->is_marked(folder) : name == format->name) return *format;
+    if (name.empty() ? is_marked(*format, folder) : name == format->name) return *format;
     known += (known.empty() ? "" : ", ") + std::string(format->name);
     markers += (markers.empty() ? "" : " or ") + std::string(format->marker);
   }
@@ -74,7 +80,11 @@ Scene open_scene(const std::string& folder, const OpenOptions& options) {
   Scene scene;
   scene.folder = folder;
   scene.format = reader.name;
-  reader.read({folder, options.allow_outside}, &scene);
+  const SceneSource source{folder, options.allow_outside};
+  if (reader.read_json)
+    reader.read_json(source, load_json((fs::path(folder) / reader.marker).string()), &scene);
+  else
+    reader.read_folder(source, &scene);
   leave_out_far_views(&scene);
   if (scene.views.empty()) {
     throw InputError(folder, "a scene with frames that can be used",
@@ -85,7 +95,7 @@ Scene open_scene(const std::string& folder, const OpenOptions& options) {
 
 bool is_scene_folder(const std::string& folder, const std::string& format) {
   return std::any_of(std::begin(kFormats), std::end(kFormats), [&](const SceneFormat* known) {
-    return (format.empty() || format == known->name) && known->is_marked(folder);
+    return (format.empty() || format == known->name) && is_marked(*known, folder);
   });
 }
 
