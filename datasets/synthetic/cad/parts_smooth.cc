@@ -82,18 +82,13 @@ TopoDS_Shape blend_step(const Dimensions& d) {
 TopoDS_Shape cast_flange(const Dimensions& d) {
   const double r = d["radius"], t = d["thickness"], h = d["hub-height"], hub = d["hub"];
   const double round = d["round"], at = 0.5 * (hub + r);
-  TopoDS_Shape shape = lathed(rounded({{{0.5 * hub, 0}, 0},
-                                       {{r, 0}, 0},
-                                       {{r, t}, round},
-                                       {{hub, t}, round},
-                                       {{hub, t + h}, 0.5 * round},
-                                       {{0.5 * hub, t + h}, 0}}));
-  const int count = int(d["holes"]);
-  for (int i = 0; i < count; ++i) {
-    const double a = 2 * M_PI * i / count;
-    shape = drilled(shape, at * std::cos(a), at * std::sin(a), t, d["hole"]);
-  }
-  return shape;
+  const TopoDS_Shape shape = lathed(rounded({{{0.5 * hub, 0}, 0},
+                                             {{r, 0}, 0},
+                                             {{r, t}, round},
+                                             {{hub, t}, round},
+                                             {{hub, t + h}, 0.5 * round},
+                                             {{0.5 * hub, t + h}, 0}}));
+  return drilled_around(shape, int(d["holes"]), at, t, d["hole"]);
 }
 
 // What rounds an edge of a box that runs along x from `apex` to `end`, between faces that look

@@ -69,22 +69,12 @@ TopoDS_Shape hex_nut(const Dimensions& d) {
   return drilled(nut, 0, 0, h, d["bore"]);
 }
 
-// Holes evenly spaced about z.
-TopoDS_Shape with_ring_of_holes(TopoDS_Shape shape, int count, double at, double height,
-                                double radius) {
-  for (int i = 0; i < count; ++i) {
-    const double a = 2 * M_PI * i / count;
-    shape = drilled(shape, at * std::cos(a), at * std::sin(a), height, radius);
-  }
-  return shape;
-}
-
 TopoDS_Shape flange(const Dimensions& d) {
   const double r = d["radius"], t = d["thickness"], h = d["hub-height"];
   const TopoDS_Shape shape = fuse(cylinder(Vector3d::Zero(), {0, 0, t}, r),
                                   cylinder(Vector3d::Zero(), {0, 0, t + h}, d["hub"]));
-  return with_ring_of_holes(drilled(shape, 0, 0, t + h, d["bore"]), int(d["holes"]), 0.72 * r, t,
-                            d["hole"]);
+  return drilled_around(drilled(shape, 0, 0, t + h, d["bore"]), int(d["holes"]), 0.72 * r, t,
+                        d["hole"]);
 }
 
 TopoDS_Shape tee(const Dimensions& d) {

@@ -102,6 +102,14 @@ TopoDS_Shape fuse(const TopoDS_Shape& a, const TopoDS_Shape& b) {
 TopoDS_Shape drilled(const TopoDS_Shape& shape, double x, double y, double height, double radius) {
   return cut(shape, cylinder({x, y, -1}, {0, 0, height + 2}, radius));
 }
+TopoDS_Shape drilled_around(TopoDS_Shape shape, int count, double at, double height,
+                            double radius) {
+  for (int i = 0; i < count; ++i) {
+    const double a = 2 * M_PI * i / count;
+    shape = drilled(shape, at * std::cos(a), at * std::sin(a), height, radius);
+  }
+  return shape;
+}
 
 std::vector<TopoDS_Edge> edges_where(
     const TopoDS_Shape& shape, const std::function<bool(const Vector3d&, const Vector3d&)>& take) {

@@ -42,6 +42,8 @@ TopoDS_Shape common(const TopoDS_Shape& a, const TopoDS_Shape& b);
 TopoDS_Shape fuse(const TopoDS_Shape& a, const TopoDS_Shape& b);
 /// A hole along z at (x, y) through what lies between z = 0 and `height`.
 TopoDS_Shape drilled(const TopoDS_Shape& shape, double x, double y, double height, double radius);
+/// Such holes evenly spaced about z, `at` from it.
+TopoDS_Shape drilled_around(TopoDS_Shape shape, int count, double at, double height, double radius);
 
 /// Edges of a shape by their end points.
 std::vector<TopoDS_Edge> edges_where(
