@@ -10,6 +10,7 @@
 #include "datasets/synthetic/render/pose_error.h"
 #include "datasets/synthetic/write/write_colmap.h"
 #include "datasets/synthetic/write/write_truth.h"
+#include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
