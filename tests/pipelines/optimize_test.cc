@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "raster/splats/reference.h"
+#include "tests/raster/reference.h"
 #include "tests/support/strokes.h"
 
 namespace sketchsplat {

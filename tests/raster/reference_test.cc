@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "raster/splats/reference.h"
+#include "tests/raster/reference.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>

@@ -5,8 +5,8 @@
 #include <random>
 #include <string>
 
-#include "raster/surfels/surfel_reference.h"
 #include "scene.h"
+#include "tests/raster/surfel_reference.h"
 
 namespace sketchsplat {
 

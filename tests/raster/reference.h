@@ -1,19 +1,67 @@
 // SPDX-License-Identifier: MIT
-#include "raster/splats/reference.h"
+#pragma once
 
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-namespace sketchsplat {
-namespace {
+#include "datasets/types/image.h"
+#include "datasets/types/view.h"
+#include "raster/splats/loss.h"
+#include "raster/splats/project.h"
+#include "raster/splats/splats.h"
 
-double visibility_of(const Eigen::VectorXf& visibility, int i) {
+// The renderer said plainly: every pixel asks every splat, in double precision, through the full 3D
+// covariance. The referee of raster/splats/render.h; far too slow for anything else.
+namespace sketchsplat {
+
+/// One splat over a scalar T (double, or a dual number that differentiates).
+template <typename T>
+struct ReferenceSplat {
+  Eigen::Matrix<T, 3, 1> mean, tangent;
+  T along, across, opacity;
+};
+
+/// k(q) of RasterOptions.
+template <typename T>
+T reference_profile(const T& q, double cutoff) {
+  using std::exp;
+  const double Q = cutoff * cutoff, rim = std::exp(-Q / 2);
+  if (!(q < T(Q))) return T(0);
+  return (exp(-q / 2.0) - rim * (1.0 + (Q - q) / 2.0)) / (1 - rim * (1 + Q / 2));
+}
+
+/// Optical depth of a splat, which must be in front of the camera, at a pixel.
+template <typename T>
+T reference_depth(const ReferenceSplat<T>& s, const View& view, int x, int y,
+                  const RasterOptions& options) {
+  using Vector2 = Eigen::Matrix<T, 2, 1>;
+  const Camera& camera = view.camera;
+  const Eigen::Matrix<T, 3, 3> R = view.cam_from_world.rotation.cast<T>();
+  const Eigen::Matrix<T, 3, 1> p = R * s.mean + view.cam_from_world.translation.cast<T>();
+  Eigen::Matrix<T, 2, 3> J;
+  J << camera.fx / p.z(), T(0), -camera.fx * p.x() / (p.z() * p.z()),  //
+      T(0), camera.fy / p.z(), -camera.fy * p.y() / (p.z() * p.z());
+  const Eigen::Matrix<T, 3, 3> Sigma =
+      s.across * s.across * Eigen::Matrix<T, 3, 3>::Identity() +
+      (s.along * s.along - s.across * s.across) * s.tangent * s.tangent.transpose();
+  Eigen::Matrix<T, 2, 2> S = J * R * Sigma * R.transpose() * J.transpose();
+  S.diagonal().array() += T(options.lowpass_px * options.lowpass_px);
+  const Vector2 d(T(x) - (camera.fx * p.x() / p.z() + camera.cx),
+                  T(y) - (camera.fy * p.y() / p.z() + camera.cy));
+  const Eigen::Matrix<T, 2, 2> S_inverse = S.inverse();
+  const T q = d.dot(S_inverse * d);
+  return s.opacity * reference_profile(q, options.cutoff);
+}
+
+inline double visibility_of(const Eigen::VectorXf& visibility, int i) {
   return visibility.size() ? visibility[i] : 1.0;
 }
 
 // The rules of RasterOptions for what is drawn at all.
-bool is_drawn(const Splats& s, int i, double visibility, const View& view,
-              const RasterOptions& options) {
+inline bool is_drawn(const Splats& s, int i, double visibility, const View& view,
+                     const RasterOptions& options) {
   double depth;
   const Eigen::Vector2d pixel = view.project(s.mean.col(i), &depth);
   const Eigen::Array2d size(view.camera.width, view.camera.height);
@@ -25,8 +73,8 @@ bool is_drawn(const Splats& s, int i, double visibility, const View& view,
          (outside <= options.margin * size).all();
 }
 
-Image<double> depth_image(const Splats& splats, const Eigen::VectorXf& visibility, const View& view,
-                          const RasterOptions& options) {
+inline Image<double> depth_image(const Splats& splats, const Eigen::VectorXf& visibility,
+                                 const View& view, const RasterOptions& options) {
   Image<double> depth(view.camera.width, view.camera.height);
   for (int i = 0; i < splats.size(); ++i) {
     const double v = visibility_of(visibility, i);
@@ -43,9 +91,9 @@ Image<double> depth_image(const Splats& splats, const Eigen::VectorXf& visibilit
 }
 
 // Adds the gradient by splat i, given `by_depth` = dL/dtau of every pixel.
-void add_gradient(const Splats& splats, int i, double visibility, const View& view,
-                  const RasterOptions& options, const Image<double>& by_depth,
-                  SplatGradient* gradient) {
+inline void add_gradient(const Splats& splats, int i, double visibility, const View& view,
+                         const RasterOptions& options, const Image<double>& by_depth,
+                         SplatGradient* gradient) {
   const Eigen::Vector3d t = splats.tangent.col(i);
   const double along = splats.along[i], across = splats.across[i], opacity = splats.opacity[i];
   const double stretch = along * along - across * across;
@@ -89,18 +137,19 @@ void add_gradient(const Splats& splats, int i, double visibility, const View& vi
   gradient->opacity[i] += visibility * by_peak;
 }
 
-}  // namespace
-
-Image<double> reference_render(const Splats& splats, const Eigen::VectorXf& visibility,
-                               const View& view, const RasterOptions& options) {
+/// Like render.
+inline Image<double> reference_render(const Splats& splats, const Eigen::VectorXf& visibility,
+                                      const View& view, const RasterOptions& options) {
   Image<double> image = depth_image(splats, visibility, view, options);
   for (double& value : image.data) value = 1 - std::exp(-value);
   return image;
 }
 
-double reference_loss(const Splats& splats, const Eigen::VectorXf& visibility, const View& view,
-                      const Image<float>& edges, const LossOptions& loss_options,
-                      const RasterOptions& options, SplatGradient* gradient) {
+/// Like render_loss, from the edge image itself; chain rule in its textbook form.
+inline double reference_loss(const Splats& splats, const Eigen::VectorXf& visibility,
+                             const View& view, const Image<float>& edges,
+                             const LossOptions& loss_options, const RasterOptions& options,
+                             SplatGradient* gradient) {
   Image<double> depth = depth_image(splats, visibility, view, options);
   double loss = 0;
   for (size_t k = 0; k < depth.data.size(); ++k) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "datasets/types/view.h"
-#include "raster/splats/reference.h"
 #include "raster/surfels/surfel.h"
+#include "tests/raster/reference.h"
 
 // The surfel renderer said plainly: every pixel asks every surfel, in double precision, where its
 // ray meets the plane of the disk. The referee of raster/surfels/surfel.h; far too slow for
