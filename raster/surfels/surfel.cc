@@ -39,12 +39,8 @@ void clear(const Camera& camera, Image<float>* image) {
 }
 
 void store_images(const SurfelSums& s, const SurfelTile& tile, SurfelImages* images) {
-  Lanes depth[kLanes], distortion[kLanes];
-  for (int y = 0; y < kLanes; ++y) {
-    depth[y] = s.m[y] + s.origin * s.alpha[y];
-    const Lanes spread = s.alpha[y] * s.m2[y] - s.m[y] * s.m[y];
-    distortion[y] = spread > 0 ? spread : Lanes{};
-  }
+  Lanes depth[kLanes];
+  for (int y = 0; y < kLanes; ++y) depth[y] = s.m[y] + s.origin * s.alpha[y];
   for (int c = 0; c < 3; ++c) {
     store(s.color[c], tile, &images->color[c]);
     store(s.normal[c], tile, &images->normal[c]);
@@ -52,7 +48,6 @@ void store_images(const SurfelSums& s, const SurfelTile& tile, SurfelImages* ima
   store(s.alpha, tile, &images->alpha);
   store(depth, tile, &images->depth);
   store(s.median, tile, &images->median_depth);
-  store(distortion, tile, &images->distortion);
 }
 
 SurfelTileGradient load_gradient(const SurfelImages& by_images, const SurfelTile& tile) {
@@ -64,7 +59,6 @@ SurfelTileGradient load_gradient(const SurfelImages& by_images, const SurfelTile
   load(by_images.alpha, tile, g.alpha);
   load(by_images.depth, tile, g.depth);
   load(by_images.median_depth, tile, g.median);
-  load(by_images.distortion, tile, g.distortion);
   return g;
 }
 
@@ -144,10 +138,8 @@ const SurfelImages& SurfelRenderer::forward(const SurfelCloud& cloud, const View
     clear(view.camera, &s.images.color[c]);
     clear(view.camera, &s.images.normal[c]);
   }
-  for (Image<float>* image :
-       {&s.images.alpha, &s.images.depth, &s.images.median_depth, &s.images.distortion}) {
+  for (Image<float>* image : {&s.images.alpha, &s.images.depth, &s.images.median_depth})
     clear(view.camera, image);
-  }
   const SurfelLoop loop(s.options);
   const int tiles = int(s.bins.tiles.size());
   s.sums.resize(tiles);

@@ -61,7 +61,6 @@ struct SurfelImages {
   Image<float> depth;      ///< sum w_i z_i: divided by alpha it is the expected depth
   Image<float> median_depth;  ///< z_i of the surfel at which the transmittance falls to 1/2 or
                               ///< below; 0 where it never does
-  Image<float> distortion;    ///< sum_{i<j} w_i w_j (z_i - z_j)^2, [world units^2]
 };
 
 /// Gradient of a scalar by every field of the cloud, and what density control asks for, summed over

@@ -156,7 +156,6 @@ SKETCHSPLAT_INLINE void composite(const SurfelLoop& loop, const SurfelTile& tile
       sums->normal[c][y] += w * f.normal[c];
     }
     sums->m[y] += w * m;
-    sums->m2[y] += w * m * m;
     const IntLanes halved = (T > 0.5f) & (T * (1.0f - s.alpha) <= 0.5f);
     sums->median[y] = halved ? z : sums->median[y];
   };
@@ -166,17 +165,15 @@ SKETCHSPLAT_INLINE void composite(const SurfelLoop& loop, const SurfelTile& tile
 }
 
 // Per pixel: the derivative of L by the weight of a surfel with colour c, normal n and depth m is
-// base + m (linear + square m) + by_color . c + by_normal . n, and `rest` the sum of w times that
-// over the surfels that are still to come, for those lose light by the alpha of one before them.
+// base + m by_depth + by_color . c + by_normal . n, and `rest` the sum of w times that over the
+// surfels that are still to come, for those lose light by the alpha of one before them.
 struct Adjoint {
-  Lanes base[kLanes], linear[kLanes], square[kLanes], rest[kLanes];
+  Lanes base[kLanes], rest[kLanes];
 
   SKETCHSPLAT_INLINE Adjoint(const SurfelSums& s, const SurfelTileGradient& g) {
     for (int y = 0; y < kLanes; ++y) {
-      base[y] = g.alpha[y] + g.depth[y] * s.origin + g.distortion[y] * s.m2[y];
-      linear[y] = g.depth[y] - 2.0f * g.distortion[y] * s.m[y];
-      square[y] = g.distortion[y] * s.alpha[y];
-      rest[y] = base[y] * s.alpha[y] + linear[y] * s.m[y] + square[y] * s.m2[y];
+      base[y] = g.alpha[y] + g.depth[y] * s.origin;
+      rest[y] = base[y] * s.alpha[y] + g.depth[y] * s.m[y];
       for (int c = 0; c < 3; ++c) {
         rest[y] += g.color[c][y] * s.color[c][y] + g.normal[c][y] * s.normal[c][y];
       }
@@ -259,7 +256,7 @@ SKETCHSPLAT_INLINE void composite_backward(const SurfelLoop& loop, const SurfelT
       __attribute__((always_inline)) {
     const Lanes w = T * s.alpha;
     const Lanes m = f.depth * (s.low ? Lanes{} + 1.0f : s.rw) - sums.origin;
-    Lanes by_weight = adjoint.base[y] + m * (adjoint.linear[y] + adjoint.square[y] * m);
+    Lanes by_weight = adjoint.base[y] + m * g.depth[y];
     for (int c = 0; c < 3; ++c) {
       by_weight += g.color[c][y] * f.color[c] + g.normal[c][y] * f.normal[c];
       sum[G::kColor0 + c] += w * g.color[c][y];
@@ -270,8 +267,7 @@ SKETCHSPLAT_INLINE void composite_backward(const SurfelLoop& loop, const SurfelT
     const Lanes by_alpha = T * by_weight - adjoint.rest[y] / (1.0f - s.alpha);
     const IntLanes free = s.inside & (s.alpha < loop.max_alpha);
     const IntLanes halved = (T > 0.5f) & (T * (1.0f - s.alpha) <= 0.5f);
-    const Lanes by_z =
-        w * (adjoint.linear[y] + 2.0f * adjoint.square[y] * m) + (halved ? g.median[y] : Lanes{});
+    const Lanes by_z = w * g.depth[y] + (halved ? g.median[y] : Lanes{});
     const float dy = float(tile.ty * kLanes - f.mean.y()) + float(y);
     add_row<kSkewed>(loop, f, s, dy, free ? by_alpha : Lanes{}, by_z, sum);
   };

@@ -31,15 +31,15 @@ SurfelBins bin_surfels(const std::vector<SurfelFootprint>& footprints, const Cam
 /// Sums over the surfels of a tile, pixel by pixel; m = z - origin, which keeps floats accurate.
 struct alignas(64) SurfelSums {
   Lanes alpha[kLanes], color[3][kLanes], normal[3][kLanes];
-  Lanes m[kLanes], m2[kLanes];  ///< sum w m, sum w m^2
-  Lanes median[kLanes];         ///< depth
+  Lanes m[kLanes];       ///< sum w m
+  Lanes median[kLanes];  ///< depth
   float origin;
 };
 
 /// What backward wants of the images of a tile: the gradients by them, 0 where there is none.
 struct alignas(64) SurfelTileGradient {
   Lanes alpha[kLanes], color[3][kLanes], normal[3][kLanes];
-  Lanes depth[kLanes], median[kLanes], distortion[kLanes];
+  Lanes depth[kLanes], median[kLanes];
 };
 
 /// Sums over the pixels of one entry. Names as in SurfelFootprintGradient.

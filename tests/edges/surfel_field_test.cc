@@ -93,7 +93,7 @@ struct Seen {
     };
     for (int c = 0; c < 3; ++c)
       fill(&target.color[c]), fill(&images.color[c]), fill(&images.normal[c]);
-    fill(&target.alpha), fill(&images.alpha), fill(&images.distortion);
+    fill(&target.alpha), fill(&images.alpha);
     images.depth = Image<float>(kSide, kSide);
     for (size_t i = 0; i < images.depth.data.size(); ++i) {
       images.alpha.data[i] = 0.6f + 0.3f * images.alpha.data[i];
@@ -107,9 +107,8 @@ struct Seen {
 TEST(SurfelLoss, GradientIsThatOfFiniteDifferences) {
   Seen seen;
   SurfelLossOptions options;
-  options.distortion = 0.5;
   SurfelImages by, unused;
-  surfel_loss(seen.images, seen.target, seen.mask, 0.2, options, &by);
+  surfel_loss(seen.images, seen.target, seen.mask, options, &by);
   const auto compare = [&](Image<float>* image, const Image<float>& by_image) {
     double largest = 0;
     for (const float g : by_image.data) largest = std::max(largest, double(std::abs(g)));
@@ -117,9 +116,9 @@ TEST(SurfelLoss, GradientIsThatOfFiniteDifferences) {
     for (int i = 31; i < Seen::kSide * Seen::kSide; i += 17) {
       const float kept = image->data[i], h = 2e-3f;
       image->data[i] = kept + h;
-      const double up = surfel_loss(seen.images, seen.target, seen.mask, 0.2, options, &unused);
+      const double up = surfel_loss(seen.images, seen.target, seen.mask, options, &unused);
       image->data[i] = kept - h;
-      const double down = surfel_loss(seen.images, seen.target, seen.mask, 0.2, options, &unused);
+      const double down = surfel_loss(seen.images, seen.target, seen.mask, options, &unused);
       image->data[i] = kept;
       EXPECT_NEAR((up - down) / (2 * h), by_image.data[i], 0.03 * largest);
     }
@@ -128,7 +127,6 @@ TEST(SurfelLoss, GradientIsThatOfFiniteDifferences) {
   compare(&seen.images.alpha, by.alpha);
   compare(&seen.images.depth, by.depth);
   compare(&seen.images.normal[2], by.normal[2]);
-  compare(&seen.images.distortion, by.distortion);
 }
 
 TEST(SurfelLoss, IsNothingWhereTheRenderingIsThePicture) {
@@ -136,9 +134,9 @@ TEST(SurfelLoss, IsNothingWhereTheRenderingIsThePicture) {
   for (int c = 0; c < 3; ++c) seen.images.color[c] = seen.target.color[c];
   seen.images.alpha = seen.target.alpha;
   SurfelLossOptions options;
-  options.consistency = options.distortion = 0;
+  options.consistency = 0;
   SurfelImages by;
-  EXPECT_NEAR(surfel_loss(seen.images, seen.target, seen.mask, 0.2, options, &by), 0, 1e-5);
+  EXPECT_NEAR(surfel_loss(seen.images, seen.target, seen.mask, options, &by), 0, 1e-5);
 }
 
 // A plane z = 0 with the normal n, a point every unit.

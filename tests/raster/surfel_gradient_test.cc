@@ -11,11 +11,11 @@ namespace {
 using Jet = ceres::Jet<double, 15>;
 using Vector15 = Eigen::Matrix<double, 15, 1>;
 
-// The ten terms of reference_value, one per image, with their derivatives by the parameters of
+// The nine terms of reference_value, one per image, with their derivatives by the parameters of
 // surfel i.
-Eigen::Matrix<Jet, 10, 1> values_by_jets(const SurfelCloud& cloud, int i, const View& view,
-                                         const SurfelImages& by_images,
-                                         const SurfelOptions& options) {
+Eigen::Matrix<Jet, 9, 1> values_by_jets(const SurfelCloud& cloud, int i, const View& view,
+                                        const SurfelImages& by_images,
+                                        const SurfelOptions& options) {
   std::vector<ReferenceSurfel<Jet>> surfels;
   for (int k = 0; k < cloud.size(); ++k) surfels.push_back(reference_surfel<Jet>(cloud, k));
   int next = 0;
@@ -30,13 +30,13 @@ Eigen::Matrix<Jet, 10, 1> values_by_jets(const SurfelCloud& cloud, int i, const 
   mark(surfels[i].skew);
   std::vector<ReferenceDisk<Jet>> disks;
   for (const auto& s : surfels) disks.push_back(reference_disk(s, view, options));
-  Eigen::Matrix<Jet, 10, 1> values;
+  Eigen::Matrix<Jet, 9, 1> values;
   values.setConstant(Jet(0.0));
   const auto by = channels(by_images);
   for (int y = 0; y < view.camera.height; ++y) {
     for (int x = 0; x < view.camera.width; ++x) {
       const auto pixel = channels(reference_surfel_pixel(surfels, disks, view, x, y, options));
-      for (int k = 0; k < 10; ++k) values[k] += double(by[k]->at(x, y)) * pixel[k];
+      for (int k = 0; k < 9; ++k) values[k] += double(by[k]->at(x, y)) * pixel[k];
     }
   }
   return values;
@@ -123,9 +123,9 @@ TEST_P(SurfelGradients, OfOneImageAloneAreThoseOfDualNumbers) {
   const SurfelCloud cloud = test_cloud(3, 9, 0.15);
   const SurfelOptions options = test_options(GetParam());
   const SurfelImages all = test_image_gradients(view);
-  std::vector<Eigen::Matrix<Jet, 10, 1>> expected;
+  std::vector<Eigen::Matrix<Jet, 9, 1>> expected;
   for (int i = 0; i < 3; ++i) expected.push_back(values_by_jets(cloud, i, view, all, options));
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < 9; ++k) {
     SCOPED_TRACE("image " + std::to_string(k));
     SurfelImages one;
     *channels(one)[k] = *channels(all)[k];

@@ -31,7 +31,7 @@ struct ReferenceSurfel {
 template <typename T>
 struct ReferenceSurfelPixel {
   Eigen::Matrix<T, 3, 1> color, normal;
-  T alpha, depth, median_depth, distortion;
+  T alpha, depth, median_depth;
 };
 
 template <typename T>
@@ -128,8 +128,7 @@ ReferenceSurfelPixel<T> reference_surfel_pixel(const std::vector<ReferenceSurfel
   ReferenceSurfelPixel<T> p;
   p.color.setZero();
   p.normal.setZero();
-  p.alpha = p.depth = p.median_depth = p.distortion = T(0);
-  std::vector<T> weights, depths;
+  p.alpha = p.depth = p.median_depth = T(0);
   T light(1);
   for (const int i : order) {
     if (!disks[i].drawn) continue;
@@ -141,11 +140,6 @@ ReferenceSurfelPixel<T> reference_surfel_pixel(const std::vector<ReferenceSurfel
     p.normal += w * disks[i].normal;
     p.alpha += w;
     p.depth += w * z;
-    for (size_t k = 0; k < weights.size(); ++k) {
-      p.distortion += w * weights[k] * (z - depths[k]) * (z - depths[k]);
-    }
-    weights.push_back(w);
-    depths.push_back(z);
     const T before = light;
     light *= T(1) - alpha;
     if (before > T(0.5) && light <= T(0.5)) p.median_depth = z;

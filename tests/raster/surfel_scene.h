@@ -54,14 +54,14 @@ inline SurfelCloud select(const SurfelCloud& c, const std::vector<int>& order) {
 /// The images, in one fixed order.
 template <typename Images>
 auto channels(Images& i) -> std::vector<decltype(&i.alpha)> {
-  return {&i.color[0],  &i.color[1], &i.color[2], &i.normal[0],    &i.normal[1],
-          &i.normal[2], &i.alpha,    &i.depth,    &i.median_depth, &i.distortion};
+  return {&i.color[0],  &i.color[1], &i.color[2], &i.normal[0],   &i.normal[1],
+          &i.normal[2], &i.alpha,    &i.depth,    &i.median_depth};
 }
 
 template <typename T>
-Eigen::Matrix<T, 10, 1> channels(const ReferenceSurfelPixel<T>& p) {
-  Eigen::Matrix<T, 10, 1> all;
-  all << p.color, p.normal, p.alpha, p.depth, p.median_depth, p.distortion;
+Eigen::Matrix<T, 9, 1> channels(const ReferenceSurfelPixel<T>& p) {
+  Eigen::Matrix<T, 9, 1> all;
+  all << p.color, p.normal, p.alpha, p.depth, p.median_depth;
   return all;
 }
 
@@ -78,8 +78,6 @@ inline SurfelImages test_image_gradients(const View& view) {
       }
     }
   }
-  // Spreads of 0.1 units make distortions of 0.01.
-  for (float& value : g.distortion.data) value *= 30;
   return g;
 }
 
@@ -106,7 +104,7 @@ inline double reference_value(const SurfelCloud& cloud, const View& view,
     for (int x = 0; x < view.camera.width; ++x) {
       const auto pixel = channels(reference_surfel_pixel(surfels, disks, view, x, y, options));
       const auto by = channels(by_images);
-      for (int k = 0; k < 10; ++k) value += by[k]->at(x, y) * pixel[k];
+      for (int k = 0; k < 9; ++k) value += by[k]->at(x, y) * pixel[k];
     }
   }
   return value;

@@ -26,7 +26,7 @@ SurfelImages render_surfels(const SurfelCloud& cloud, const View& view,
 
 double largest_difference(const SurfelImages& a, const SurfelImages& b) {
   double largest = 0;
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < 9; ++k) {
     const auto &x = channels(a)[k]->data, &y = channels(b)[k]->data;
     EXPECT_EQ(x.size(), y.size());
     for (size_t i = 0; i < x.size(); ++i) {
@@ -37,7 +37,7 @@ double largest_difference(const SurfelImages& a, const SurfelImages& b) {
 }
 
 void expect_same_bytes(const SurfelImages& a, const SurfelImages& b) {
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < 9; ++k) {
     const auto &x = channels(a)[k]->data, &y = channels(b)[k]->data;
     ASSERT_EQ(x.size(), y.size());
     EXPECT_EQ(0, std::memcmp(x.data(), y.data(), x.size() * sizeof(float))) << "image " << k;
@@ -67,7 +67,7 @@ void expect_reference(const SurfelCloud& cloud, const View& view, const SurfelOp
   for (int y = 0; y < view.camera.height; ++y) {
     for (int x = 0; x < view.camera.width; ++x) {
       const auto expected = channels(reference_surfel_pixel(surfels, disks, view, x, y, options));
-      for (int k = 0; k < 10; ++k) {
+      for (int k = 0; k < 9; ++k) {
         ASSERT_NEAR(channels(images)[k]->at(x, y), expected[k], 1e-4)
             << "image " << k << " at " << x << ", " << y;
       }
@@ -170,7 +170,6 @@ TEST(Surfels, CentreOfAFacingSurfelHasItsOpacityDepthAndNormal) {
   EXPECT_NEAR(i.median_depth.at(22, 17), 4, 1e-5);
   EXPECT_NEAR(i.normal[2].at(22, 17), -alpha, 1e-6);
   EXPECT_NEAR(i.color[1].at(22, 17), alpha * cloud.color(1, 0), 1e-6);
-  EXPECT_EQ(i.distortion.at(22, 17), 0);
   EXPECT_EQ(i.alpha.at(0, 0), 0);
 }
 
@@ -267,7 +266,6 @@ TEST_P(Surfels, ScalingCameraAndWorldTogetherScalesTheDepths) {
     SurfelImages after = render_surfels(scaled, moved, test_options(GetParam()));
     for (float& z : after.depth.data) z /= float(scale);
     for (float& z : after.median_depth.data) z /= float(scale);
-    for (float& d : after.distortion.data) d /= float(scale * scale);
     EXPECT_LT(largest_difference(before, after), 1e-4);
   }
 }
@@ -286,7 +284,7 @@ TEST_P(Surfels, MaskedPixelsAreBlackAndTheOthersKeepTheirBytes) {
   const SurfelImages images = masked.forward(cloud, view, mask);
   SurfelGradient a, b;
   masked.backward(cloud, view, by_images, &a);
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < 9; ++k) {
     for (size_t i = 0; i < mask.data.size(); ++i) {
       if (!mask.data[i]) channels(expected)[k]->data[i] = channels(by_images)[k]->data[i] = 0;
     }

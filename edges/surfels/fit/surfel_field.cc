@@ -228,7 +228,7 @@ class Trainer {
       const SurfelImages& images = renderer.forward(seen, t.view.view, t.mask);
       SurfelImages by_images;
       SurfelGradient gradient;
-      each[b].loss = surfel_loss(images, t.view, t.mask, t.footprint, loss_, &by_images);
+      each[b].loss = surfel_loss(images, t.view, t.mask, loss_, &by_images);
       renderer.backward(seen, t.view.view, by_images, &gradient);
       each[b].gradient = spread_gradient(gradient, facing, cloud.size());
     });

@@ -37,7 +37,7 @@ double ssim_loss(const cv::Mat1f& a, const cv::Mat1f& b, const Image<std::uint8_
       const float s2 = aa(y, x) - u * u + bb(y, x) - v * v + kC2;
       const float ssim = l1 * s1 / (l2 * s2);
       sum += 1 - ssim;
-      by_square(y, x) = ssim / s2;           // by the blurred a^2, of 1 - SSIM
+      by_square(y, x) = ssim / s2;             // by the blurred a^2, of 1 - SSIM
       by_product(y, x) = -2 * l1 / (l2 * s2);  // by the blurred a b
       by_mean(y, x) = -(2 * v * s1 / (l2 * s2) - 2 * v * l1 / (l2 * s2) - 2 * u * ssim / l2 +
                         2 * u * ssim / s2);
@@ -117,8 +117,8 @@ double consistency(const SurfelImages& images, const Camera& camera,
 }  // namespace
 
 double surfel_loss(const SurfelImages& images, const TrainingView& target,
-                   const Image<std::uint8_t>& mask, double footprint,
-                   const SurfelLossOptions& options, SurfelImages* by_images) {
+                   const Image<std::uint8_t>& mask, const SurfelLossOptions& options,
+                   SurfelImages* by_images) {
   *by_images = SurfelImages();
   double n = 0;
   for (const std::uint8_t m : mask.data) n += m;
@@ -133,15 +133,6 @@ double surfel_loss(const SurfelImages& images, const TrainingView& target,
   }
   if (options.consistency > 0)
     loss += consistency(images, target.view.camera, mask, options.consistency / n, by_images);
-  if (options.distortion > 0) {
-    const double weight = options.distortion / (n * footprint * footprint);
-    by_images->distortion = Image<float>(mask.width, mask.height);
-    for (size_t i = 0; i < mask.data.size(); ++i) {
-      if (!mask.data[i]) continue;
-      loss += weight * images.distortion.data[i];
-      by_images->distortion.data[i] = float(weight);
-    }
-  }
   return loss;
 }
 
