@@ -34,16 +34,4 @@ struct GeometryNoise {
 EdgelMap geometry_edges(const GeometryMaps& maps, const Camera& camera,
                         const GeometryOptions& options, GeometryNoise* noise = nullptr);
 
-/// The plain form that 2DGS-SN is published as, thick edges for comparison:
-///   E = G_f * (g(A) > t | g(D) > t_d | g(N) > t_n),
-/// g the Sobel gradient, D in pixel footprints, N in degrees, G_f Gaussian; in [0, 1].
-struct ThickOptions {
-  double alpha = 0.25;       ///< [1/px]
-  double depth = 3.0;        ///< [pixel footprints / px]
-  double normal_deg = 12.0;  ///< [deg / px]
-  double sigma_px = 1.0;     ///< [px] of G_f; 0: none
-};
-Image<float> geometry_edge_map(const GeometryMaps& maps, const Camera& camera,
-                               const ThickOptions& options);
-
 }  // namespace sketchsplat

@@ -6,7 +6,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
+#include <opencv2/imgproc.hpp>
 #include <random>
+
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 namespace {
@@ -185,6 +188,55 @@ TEST(GeometryEdges, EmptyMapsAndMapsOfNothingGiveNoEdges) {
   const EdgelMap map = geometry_edges(nothing, camera(), {});
   EXPECT_TRUE(map.edgels.empty());
   EXPECT_EQ(map.num_chains(), 0);
+}
+
+// The plain form that 2DGS-SN is published as, thick edges for comparison:
+//   E = G_f * (g(A) > t | g(D) > t_d | g(N) > t_n),
+// g the Sobel gradient, D in pixel footprints, N in degrees, G_f Gaussian; in [0, 1].
+struct ThickOptions {
+  double alpha = 0.25;       ///< [1/px]
+  double depth = 3.0;        ///< [pixel footprints / px]
+  double normal_deg = 12.0;  ///< [deg / px]
+  double sigma_px = 1.0;     ///< [px] of G_f; 0: none
+};
+
+// Sobel gradient per px.
+cv::Mat1f sobel(const cv::Mat1f& value) {
+  cv::Mat1f x, y, magnitude;
+  cv::Sobel(value, x, CV_32F, 1, 0, 3, 0.125, 0, cv::BORDER_REPLICATE);
+  cv::Sobel(value, y, CV_32F, 0, 1, 3, 0.125, 0, cv::BORDER_REPLICATE);
+  cv::magnitude(x, y, magnitude);
+  return magnitude;
+}
+
+Image<float> geometry_edge_map(const GeometryMaps& maps, const Camera& camera,
+                               const ThickOptions& options) {
+  Image<float> out(maps.width(), maps.height());
+  if (out.empty()) return out;
+  const cv::Mat1f depth = mat_of(maps.depth), alpha = mat_of(maps.alpha);
+  const cv::Mat1b nothing = ~(depth > 0) | (alpha < 0.5f);
+  const cv::Mat1f alpha_slope = sobel(alpha), depth_slope = sobel(depth);
+  cv::Mat1f turn(depth.size(), 0.f);
+  for (const Image<float>& component : maps.normal) {
+    const cv::Mat1f slope = sobel(mat_of(component));
+    turn += slope.mul(slope);
+  }
+  cv::sqrt(turn, turn);
+  // Against nothing there is no depth and no normal: alpha tells.
+  cv::Mat1b unsure;
+  cv::dilate(nothing, unsure, cv::Mat());
+  cv::Mat1f edge(out.height, out.width, 0.f);
+  const double unit = std::sqrt(camera.fx * camera.fy);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      const bool jump = unit * depth_slope(y, x) / depth(y, x) > options.depth;
+      const bool crease = turn(y, x) > options.normal_deg * M_PI / 180;
+      edge(y, x) = alpha_slope(y, x) > options.alpha || (!unsure(y, x) && (jump || crease));
+    }
+  if (options.sigma_px > 0)
+    cv::GaussianBlur(edge, edge, cv::Size(), options.sigma_px, options.sigma_px);
+  std::copy(edge.begin(), edge.end(), out.data.begin());
+  return out;
 }
 
 TEST(GeometryEdgeMap, IsThickAtAStepAndBlackOnAPlane) {

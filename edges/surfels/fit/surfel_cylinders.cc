@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "datasets/neighbours/kd_tree.h"
+#include "datasets/types/degree.h"
 #include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 #include "datasets/types/widest_gap.h"
@@ -19,7 +20,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kGap = 2;              // [spacings] between surfels of one cylinder
 constexpr int kRounds = 8, kSteps = 3;  // of choosing and fitting; of a fit
 constexpr int kPairs = 2;               // that each surfel proposes a cylinder with

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "datasets/types/degree.h"
 #include "datasets/types/parallel.h"
 #include "edges/surfels/model/surfel_shading.h"
 
@@ -17,7 +18,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = M_PI / 180;
 constexpr int kHalf = 3, kSide = 2 * kHalf + 1, kPixels = kSide * kSide;  // of a patch
 constexpr double kSteps[] = {1, 2, 4};  // [px] between its samples; the first that show something
 constexpr double kContrast = 0.02;      // standard deviation of greys that is something

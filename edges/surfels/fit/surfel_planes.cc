@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "datasets/types/degree.h"
 #include "datasets/types/dense.h"
 
 namespace sketchsplat {
@@ -14,7 +15,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = M_PI / 180;
 constexpr int kNeighbours = 8;
 constexpr double kNear = 2.5;      // [spacings] to a neighbour
 constexpr double kNearAngle = 45;  // [deg] between neighbours' normals

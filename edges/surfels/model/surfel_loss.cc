@@ -5,12 +5,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "edges/image/mats.h"
+
 namespace sketchsplat {
 namespace {
-
-cv::Mat1f view_of(const Image<float>& image) {
-  return cv::Mat1f(image.height, image.width, const_cast<float*>(image.data.data()));
-}
 
 cv::Mat1f blurred(const cv::Mat1f& m) {
   cv::Mat1f out;
@@ -64,12 +62,12 @@ double photometric(const SurfelImages& images, const TrainingView& target,
   }
   if (!(options.ssim > 0)) return loss;
   const auto grey = [](const Image<float>* c) -> cv::Mat1f {
-    return (view_of(c[0]) + view_of(c[1]) + view_of(c[2])) / 3;
+    return (mat_of(c[0]) + mat_of(c[1]) + mat_of(c[2])) / 3;
   };
   cv::Mat1f by_grey;
   loss += options.ssim / n * ssim_loss(grey(images.color), grey(target.color), mask, &by_grey);
   for (int c = 0; c < 3; ++c)
-    view_of(by_images->color[c]) += by_grey * float(options.ssim / (3 * n));
+    mat_of(by_images->color[c]) += by_grey * float(options.ssim / (3 * n));
   return loss;
 }
 

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/types/parallel.h"
+#include "edges/image/mats.h"
 
 namespace sketchsplat {
 namespace {
@@ -24,18 +25,15 @@ TrainingView part(const TrainingView& view, const cv::Rect& box) {
 SurfelTarget make_target(const TrainingView& full, int side, const Eigen::Vector3d& middle) {
   TrainingView small = shrink(full, side);
   const int w = small.alpha.width, h = small.alpha.height, margin = std::max(4, side / 25);
-  const cv::Mat1f alpha(h, w, small.alpha.data.data());
   cv::Mat1b near;
-  cv::dilate(alpha > 0.02f, near, cv::Mat::ones(2 * margin + 1, 2 * margin + 1, CV_8U));
+  cv::dilate(mat_of(small.alpha) > 0.02f, near, cv::Mat::ones(2 * margin + 1, 2 * margin + 1, CV_8U));
   cv::Rect box = cv::boundingRect(near);
   box -= cv::Point(kWindow, kWindow), box += cv::Size(2 * kWindow, 2 * kWindow);
   box &= cv::Rect(0, 0, w, h);
   SurfelTarget t;
   t.view = part(small, box);
   const Camera& camera = t.view.view.camera;
-  t.mask = Image<std::uint8_t>(box.width, box.height);
-  for (int y = 0; y < box.height; ++y)
-    for (int x = 0; x < box.width; ++x) t.mask.at(x, y) = near(box.y + y, box.x + x) != 0;
+  t.mask = image_of<std::uint8_t>(near(box) & 1);
   t.footprint = std::max(1e-300, (t.view.view.cam_from_world * middle).z() / camera.fx);
   return t;
 }

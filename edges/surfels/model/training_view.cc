@@ -5,15 +5,15 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "edges/image/mats.h"
+
 namespace sketchsplat {
 namespace {
 
 Image<float> resized(const Image<float>& image, int width, int height) {
   if (width == image.width && height == image.height) return image;
   Image<float> out(width, height);
-  const cv::Mat1f from(image.height, image.width, const_cast<float*>(image.data.data()));
-  cv::Mat1f to(height, width, out.data.data());
-  cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
+  cv::resize(mat_of(image), mat_of(out), cv::Size(width, height), 0, 0, cv::INTER_AREA);
   return out;
 }
 

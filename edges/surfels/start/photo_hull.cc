@@ -8,6 +8,7 @@
 #include <random>
 
 #include "datasets/types/parallel.h"
+#include "edges/image/mats.h"
 #include "edges/surfels/start/edge_planes.h"
 #include "edges/surfels/start/plane_carving.h"
 
@@ -38,7 +39,7 @@ struct Witness {
 };
 
 cv::Mat1f signed_distance(const Image<float>& alpha) {
-  const cv::Mat1f a(alpha.height, alpha.width, const_cast<float*>(alpha.data.data()));
+  const cv::Mat1f a = mat_of(alpha);
   cv::Mat1b in = a >= 0.5f, out = a < 0.5f;
   cv::Mat1f to_out, to_in;
   cv::distanceTransform(in, to_out, cv::DIST_L2, cv::DIST_MASK_5);
@@ -62,10 +63,8 @@ Witness make_witness(const TrainingView& full, double cell, const Eigen::Vector3
   Witness w;
   w.view = small.view;
   w.inside = signed_distance(small.alpha);
-  cv::Mat1f grey(small.alpha.height, small.alpha.width);
-  for (size_t i = 0; i < small.alpha.data.size(); ++i)
-    grey.at<float>(int(i)) =
-        (small.color[0].data[i] + small.color[1].data[i] + small.color[2].data[i]) / 3;
+  const cv::Mat1f grey =
+      (mat_of(small.color[0]) + mat_of(small.color[1]) + mat_of(small.color[2])) / 3;
   w.radius = std::max(1, int(std::ceil(0.7 * cell * w.view.camera.fx / distance)));
   const cv::Mat kernel =
       cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * w.radius + 1, 2 * w.radius + 1));
