@@ -105,10 +105,8 @@ Eigen::MatrixXf sample_visibility(const Observation& o, int num_views, int gap) 
 std::vector<EdgeTarget> make_targets(const EdgeWorld& world, const OptimizeOptions& options) {
   if (options.steps <= 0) return {};
   std::vector<EdgeTarget> targets(world.views.size());
-  LossOptions loss;
-  loss.kind = LossKind::kSquared;
   parallel_for(int(targets.size()), 1, [&](int v) {
-    targets[v] = make_edge_target(draw_edge_map(world.maps[v], options.sigma_px), loss);
+    targets[v] = make_edge_target(draw_edge_map(world.maps[v], options.sigma_px));
   });
   return targets;
 }

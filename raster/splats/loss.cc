@@ -2,7 +2,6 @@
 #include "raster/splats/loss.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sketchsplat {
 namespace {
@@ -21,32 +20,12 @@ Tile cut_tile(const Image<float>& edges, int tx, int ty) {
 
 }  // namespace
 
-double pixel_loss(double value, double edge, const LossOptions& options, double* by_value) {
-  const double w =
-      options.background_weight + (options.edge_weight - options.background_weight) * edge;
-  const double r = value - edge;
-  if (options.kind == LossKind::kSquared) {
-    if (by_value) *by_value = w * r;
-    return w * r * r / 2;
-  }
-  const double root = std::hypot(r, options.softness);
-  if (by_value) *by_value = w * r / root;
-  return w * (root - options.softness);
-}
-
-double background_per_edge(const Image<float>& edges) {
-  double edge = 0;
-  for (const float value : edges.data) edge += clamp_edge(value);
-  return edge > 0 ? (double(edges.data.size()) - edge) / edge : 1.0;
-}
-
-EdgeTarget make_edge_target(const Image<float>& edges, const LossOptions& options) {
+EdgeTarget make_edge_target(const Image<float>& edges) {
   EdgeTarget target;
   target.width = edges.width;
   target.height = edges.height;
   target.tiles_x = (edges.width + Tile::kSide - 1) / Tile::kSide;
   target.tiles_y = (edges.height + Tile::kSide - 1) / Tile::kSide;
-  target.options = options;
   target.tiles.push_back(Tile{});
   for (int ty = 0; ty < target.tiles_y; ++ty) {
     for (int tx = 0; tx < target.tiles_x; ++tx) {
@@ -57,11 +36,9 @@ EdgeTarget make_edge_target(const Image<float>& edges, const LossOptions& option
       if (!blank) target.tiles.push_back(tile);
     }
   }
-  for (const Tile& tile : target.tiles) {
-    for (const float value : tile.value) {
-      if (value > 0) target.empty_loss += pixel_loss(0, value, options);
-    }
-  }
+  for (const Tile& tile : target.tiles)
+    for (const float value : tile.value)
+      if (value > 0) target.empty_loss += double(value) * value / 2;
   return target;
 }
 

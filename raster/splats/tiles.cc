@@ -125,40 +125,23 @@ void expose_all(Tile* tiles, size_t count) {
 }
 
 // Loss in excess of the empty picture's, per pixel; tile: optical depth -> derivative by it.
-// rho(I - E) - rho(-E) is I (I - 2E) / 2 or I (I - 2E) / (sum of the roots): nothing cancels.
-template <bool kSquared>
-SKETCHSPLAT_INLINE void compare_tile(const Tile& edges, float edge_weight, float background_weight,
-                                     float softness2, Tile* tile, float* excess) {
+// ((I - E)^2 - E^2) / 2 is I (I - 2E) / 2: nothing cancels.
+SKETCHSPLAT_INLINE void compare_tile(const Tile& edges, Tile* tile, float* excess) {
   for (int k = 0; k < Tile::kPixels; ++k) {
-    const float E = edges.value[k], t = transmittance(tile->value[k]), I = 1 - t, r = I - E;
-    const float weight = background_weight + (edge_weight - background_weight) * E;
-    const float w = E >= 0 ? weight : 0.0f;
-    const float change = w * I * (I - 2 * E);
-    if (kSquared) {
-      excess[k] = 0.5f * change;
-      tile->value[k] = w * r * t;
-    } else {
-      const float root = std::sqrt(r * r + softness2);
-      excess[k] = change / (root + std::sqrt(E * E + softness2));
-      tile->value[k] = w * r * t / root;
-    }
+    const float E = edges.value[k], t = transmittance(tile->value[k]), I = 1 - t;
+    const float weight = E >= 0 ? 1.0f : 0.0f;  // there is no pixel
+    excess[k] = weight * I * (I - 2 * E) * 0.5f;
+    tile->value[k] = weight * (I - E) * t;
   }
 }
 
 SKETCHSPLAT_CLONES
 double compare_all(const EdgeTarget& target, TouchedTiles* by_depth) {
-  const LossOptions& o = target.options;
-  const float ew = float(o.edge_weight), bw = float(o.background_weight);
-  const float softness2 = float(o.softness * o.softness);
   double total = 0;
   alignas(64) float excess[Tile::kPixels];
   for (size_t s = 0; s < by_depth->tiles.size(); ++s) {
     const Tile& edges = target.tiles[target.tile_index[by_depth->touched[s]]];
-    if (o.kind == LossKind::kSquared) {
-      compare_tile<true>(edges, ew, bw, softness2, &by_depth->tiles[s], excess);
-    } else {
-      compare_tile<false>(edges, ew, bw, softness2, &by_depth->tiles[s], excess);
-    }
+    compare_tile(edges, &by_depth->tiles[s], excess);
     Lanes partial = {}, row;
     for (int k = 0; k < Tile::kPixels; k += kLanes) {
       std::memcpy(&row, excess + k, sizeof(row));

@@ -33,18 +33,16 @@ struct SmallWorld {
   std::vector<View> views;
   std::vector<Image<float>> edges;
   std::vector<EdgeTarget> targets;
-  LossOptions loss;
   SampleLayout layout;
   Eigen::MatrixXf visibility;
   Drawing drawing;
 
   SmallWorld() {
     const Sketch truth = moved(every_kind(), {0.015, -0.02, 0.01});
-    loss.kind = LossKind::kSquared;
     for (const View& v : ring_of_views(3, kMiddle, 3)) {
       views.push_back(smaller(v, 40));
       edges.push_back(draw_edge_map(ideal_edgels(views.back(), polylines_of(truth)), 1.0));
-      targets.push_back(make_edge_target(edges.back(), loss));
+      targets.push_back(make_edge_target(edges.back()));
     }
     drawing.sketch = every_kind();
     drawing.width = Eigen::VectorXd::LinSpaced(6, 0.03, 0.05);
@@ -56,7 +54,7 @@ struct SmallWorld {
   double plain_loss(const Drawing& d) const {
     double sum = 0;
     for (size_t v = 0; v < views.size(); ++v)
-      sum += reference_loss(draw_splats(d, layout), visibility.col(v), views[v], edges[v], loss,
+      sum += reference_loss(draw_splats(d, layout), visibility.col(v), views[v], edges[v],
                             RasterOptions(), nullptr);
     return sum;
   }

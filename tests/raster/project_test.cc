@@ -131,7 +131,7 @@ TEST(Project, LeavesOutWhatCannotBeSeen) {
 TEST(Project, SplatsThatAreLeftOutGetNoGradient) {
   for (const Hopeless& h : hopeless_splats()) {
     const View view = straight_view();
-    const EdgeTarget target = make_edge_target(Image<float>(101, 81, 0.5f), LossOptions());
+    const EdgeTarget target = make_edge_target(Image<float>(101, 81, 0.5f));
     SplatGradient gradient;
     const double loss = render_loss(h.splats, kAllVisible, view, target, {}, &gradient);
     EXPECT_TRUE(std::isfinite(loss)) << h.why;

@@ -148,15 +148,14 @@ inline Image<double> reference_render(const Splats& splats, const Eigen::VectorX
 /// Like render_loss, from the edge image itself; chain rule in its textbook form.
 inline double reference_loss(const Splats& splats, const Eigen::VectorXf& visibility,
                              const View& view, const Image<float>& edges,
-                             const LossOptions& loss_options, const RasterOptions& options,
-                             SplatGradient* gradient) {
+                             const RasterOptions& options, SplatGradient* gradient) {
   Image<double> depth = depth_image(splats, visibility, view, options);
   double loss = 0;
   for (size_t k = 0; k < depth.data.size(); ++k) {
     const double transmittance = std::exp(-depth.data[k]);
-    double by_value;
-    loss += pixel_loss(1 - transmittance, edges.data[k], loss_options, &by_value);
-    depth.data[k] = by_value * transmittance;
+    const double off = 1 - transmittance - edges.data[k];
+    loss += off * off / 2;
+    depth.data[k] = off * transmittance;
   }
   if (!gradient) return loss;
   *gradient = SplatGradient::zero(splats.size());

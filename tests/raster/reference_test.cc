@@ -11,20 +11,6 @@ namespace {
 
 using Jet = ceres::Jet<double, 9>;
 
-LossOptions loss_options(LossKind kind) { return {kind, 0.1, 3.0, 0.7}; }
-
-class Gradients : public testing::TestWithParam<LossKind> {};
-INSTANTIATE_TEST_SUITE_P(Both, Gradients,
-                         testing::Values(LossKind::kSquared, LossKind::kCharbonnier));
-
-template <typename T>
-T loss_of_value(const T& value, double edge, const LossOptions& o) {
-  const double w = o.background_weight + (o.edge_weight - o.background_weight) * edge;
-  const T r = value - edge;
-  if (o.kind == LossKind::kSquared) return w * r * r / 2.0;
-  return w * (sqrt(r * r + o.softness * o.softness) - o.softness);
-}
-
 ReferenceSplat<Jet> jets(const Splats& s, int i) {
   ReferenceSplat<Jet> j;
   for (int k = 0; k < 3; ++k) {
@@ -39,7 +25,7 @@ ReferenceSplat<Jet> jets(const Splats& s, int i) {
 
 // Gradient of the loss by splat i through dual numbers; the others are constants.
 Jet loss_by_jets(const Splats& splats, int i, const View& view, const Image<float>& edges,
-                 const LossOptions& loss_options, const RasterOptions& options) {
+                 const RasterOptions& options) {
   Splats others = splats;
   others.opacity[i] = 0;
   const Image<double> rest = reference_render(others, kAllVisible, view, options);
@@ -49,7 +35,8 @@ Jet loss_by_jets(const Splats& splats, int i, const View& view, const Image<floa
     for (int x = 0; x < edges.width; ++x) {
       const Jet depth = reference_depth(splat, view, x, y, options);
       const Jet value = 1.0 - (1 - rest.at(x, y)) * exp(-depth);
-      loss += loss_of_value(value, edges.at(x, y), loss_options);
+      const Jet off = value - double(edges.at(x, y));
+      loss += off * off / 2.0;
     }
   }
   return loss;
@@ -76,16 +63,15 @@ TEST(Profile, StaysWithinTwoPercentOfTheGaussian) {
   }
 }
 
-TEST_P(Gradients, ReferenceAndFastGradientsAreThoseOfDualNumbers) {
+TEST(Gradients, ReferenceAndFastGradientsAreThoseOfDualNumbers) {
   const View view = test_view();
   const Splats splats = test_splats(12);
   const Image<float> edges = test_edges(view);
-  const LossOptions loss = loss_options(GetParam());
   SplatGradient reference, fast;
-  const double value = reference_loss(splats, kAllVisible, view, edges, loss, {}, &reference);
-  render_loss(splats, kAllVisible, view, make_edge_target(edges, loss), {}, &fast);
+  const double value = reference_loss(splats, kAllVisible, view, edges, {}, &reference);
+  render_loss(splats, kAllVisible, view, make_edge_target(edges), {}, &fast);
   for (int i = 0; i < splats.size(); ++i) {
-    const Jet expected = loss_by_jets(splats, i, view, edges, loss, {});
+    const Jet expected = loss_by_jets(splats, i, view, edges, {});
     EXPECT_NEAR(value, expected.a, 1e-10 * value);
     EXPECT_LT((of_splat(reference, i) - expected.v).norm(), 1e-11 * expected.v.norm());
     // Floats: the terms of a small gradient are as large as those of a large one.
@@ -93,21 +79,20 @@ TEST_P(Gradients, ReferenceAndFastGradientsAreThoseOfDualNumbers) {
   }
 }
 
-TEST_P(Gradients, ReferenceGradientIsThatOfCentralDifferences) {
+TEST(Gradients, ReferenceGradientIsThatOfCentralDifferences) {
   const View view = test_view(29, 23);
   Splats splats = test_splats(3, 5);
   splats.mean *= 0.3;
   const Eigen::VectorXf visibility = Eigen::Vector3f(1, 0.6f, 0.3f);
   const Image<float> edges = test_edges(view);
-  const LossOptions loss = loss_options(GetParam());
   SplatGradient gradient;
-  reference_loss(splats, visibility, view, edges, loss, {}, &gradient);
+  reference_loss(splats, visibility, view, edges, {}, &gradient);
   const auto check = [&](double* parameter, double analytic) {
     const double h = 1e-6, kept = *parameter;
     *parameter = kept + h;
-    const double above = reference_loss(splats, visibility, view, edges, loss, {}, nullptr);
+    const double above = reference_loss(splats, visibility, view, edges, {}, nullptr);
     *parameter = kept - h;
-    const double below = reference_loss(splats, visibility, view, edges, loss, {}, nullptr);
+    const double below = reference_loss(splats, visibility, view, edges, {}, nullptr);
     *parameter = kept;
     EXPECT_NEAR(analytic, (above - below) / (2 * h), 1e-5 * (1 + std::abs(analytic)));
   };
@@ -120,16 +105,15 @@ TEST_P(Gradients, ReferenceGradientIsThatOfCentralDifferences) {
   }
 }
 
-TEST_P(Gradients, FastIsTheReference) {
+TEST(Gradients, FastIsTheReference) {
   const View view = test_view();
   const Splats splats = test_splats(60);
   Eigen::VectorXf visibility(60);
   for (int i = 0; i < 60; ++i) visibility[i] = float(i % 4) / 3;
   const Image<float> edges = test_edges(view);
-  const LossOptions loss = loss_options(GetParam());
   SplatGradient slow, fast;
-  const double expected = reference_loss(splats, visibility, view, edges, loss, {}, &slow);
-  const EdgeTarget target = make_edge_target(edges, loss);
+  const double expected = reference_loss(splats, visibility, view, edges, {}, &slow);
+  const EdgeTarget target = make_edge_target(edges);
   EXPECT_NEAR(render_loss(splats, visibility, view, target, {}, &fast), expected, 1e-6 * expected);
   EXPECT_LT((flatten(fast) - flatten(slow)).cwiseAbs().maxCoeff(),
             1e-5 * flatten(slow).cwiseAbs().maxCoeff());
@@ -148,8 +132,8 @@ TEST(Reference, HugeSplatIsTheFastOnes) {
   splats.across[0] = 0.8;
   const Image<float> edges = test_edges(view);
   SplatGradient slow, fast;
-  reference_loss(splats, kAllVisible, view, edges, {}, {}, &slow);
-  render_loss(splats, kAllVisible, view, make_edge_target(edges, {}), {}, &fast);
+  reference_loss(splats, kAllVisible, view, edges, {}, &slow);
+  render_loss(splats, kAllVisible, view, make_edge_target(edges), {}, &fast);
   EXPECT_LT((flatten(fast) - flatten(slow)).norm(), 2e-5 * flatten(slow).norm());
 }
 

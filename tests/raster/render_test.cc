@@ -56,7 +56,7 @@ TEST(Render, EmptySplatsAreBlack) {
 
 TEST(Render, EmptySplatsLoseWhatTheEdgesWeigh) {
   const View view = test_view();
-  const EdgeTarget target = make_edge_target(test_edges(view), LossOptions());
+  const EdgeTarget target = make_edge_target(test_edges(view));
   SplatGradient gradient;
   EXPECT_EQ(render_loss(Splats::zero(0), kAllVisible, view, target, {}, &gradient),
             target.empty_loss);
@@ -68,8 +68,7 @@ TEST(Render, ImageOfNoPixelsIsEmpty) {
   const View view = test_view(0, 0);
   SplatGradient gradient;
   EXPECT_TRUE(render(test_splats(5), kAllVisible, view, {}).empty());
-  EXPECT_EQ(render_loss(test_splats(5), kAllVisible, view, make_edge_target({}, {}), {}, &gradient),
-            0);
+  EXPECT_EQ(render_loss(test_splats(5), kAllVisible, view, make_edge_target({}), {}, &gradient), 0);
   EXPECT_EQ(flatten(gradient).norm(), 0);
 }
 
@@ -92,7 +91,7 @@ TEST(Render, VeryOpaqueSplatsSaturateWithoutOverflow) {
   EXPECT_EQ(std::count_if(image.data.begin(), image.data.end(),
                           [](float v) { return !(v >= 0 && v <= 1); }),
             0);
-  render_loss(splats, kAllVisible, view, make_edge_target(test_edges(view), {}), {}, &gradient);
+  render_loss(splats, kAllVisible, view, make_edge_target(test_edges(view)), {}, &gradient);
   EXPECT_TRUE(flatten(gradient).allFinite());
 }
 
@@ -106,7 +105,7 @@ TEST(Render, OrderOfTheSplatsChangesNothingBeyondRounding) {
   EXPECT_LT(largest_difference(render(splats, kAllVisible, view, {}),
                                render(other, kAllVisible, view, {})),
             1e-6);
-  const EdgeTarget target = make_edge_target(test_edges(view), LossOptions());
+  const EdgeTarget target = make_edge_target(test_edges(view));
   SplatGradient a, b;
   const double loss = render_loss(splats, kAllVisible, view, target, {}, &a);
   EXPECT_NEAR(render_loss(other, kAllVisible, view, target, {}, &b), loss, 1e-7 * loss);
@@ -116,7 +115,7 @@ TEST(Render, OrderOfTheSplatsChangesNothingBeyondRounding) {
 TEST(Render, MovingCameraAndWorldTogetherChangesNothing) {
   View view = test_view();
   Splats splats = test_splats(30);
-  const EdgeTarget target = make_edge_target(test_edges(view), LossOptions());
+  const EdgeTarget target = make_edge_target(test_edges(view));
   SplatGradient a, b;
   const double loss = render_loss(splats, kAllVisible, view, target, {}, &a);
   const Eigen::Vector3d shift(0.75, -2.5, 1.25);
@@ -149,7 +148,7 @@ TEST(Render, HiddenSplatHasNoEffectAndNoGradient) {
   std::vector<int> rest = {0, 1, 2, 3, 5, 6, 7, 8, 9};
   const Splats without = permuted(all, rest);
   EXPECT_EQ(render(all, visibility, view, {}).data, render(without, kAllVisible, view, {}).data);
-  const EdgeTarget target = make_edge_target(test_edges(view), LossOptions());
+  const EdgeTarget target = make_edge_target(test_edges(view));
   SplatGradient a, b;
   EXPECT_EQ(render_loss(all, visibility, view, target, {}, &a),
             render_loss(without, kAllVisible, view, target, {}, &b));
@@ -160,14 +159,11 @@ TEST(Render, HiddenSplatHasNoEffectAndNoGradient) {
 TEST(Render, LossOfThePictureAgainstItselfIsZero) {
   const View view = test_view();
   const Splats splats = test_splats(20);
-  for (const LossKind kind : {LossKind::kSquared, LossKind::kCharbonnier}) {
-    const LossOptions options{kind, 0.05, 2, 1};
-    const EdgeTarget target = make_edge_target(render(splats, kAllVisible, view, {}), options);
-    SplatGradient gradient;
-    EXPECT_NEAR(render_loss(splats, kAllVisible, view, target, {}, &gradient) / target.empty_loss,
-                0, 1e-6);
-    EXPECT_LT(flatten(gradient).norm(), 1e-6 * target.empty_loss);
-  }
+  const EdgeTarget target = make_edge_target(render(splats, kAllVisible, view, {}));
+  SplatGradient gradient;
+  EXPECT_NEAR(render_loss(splats, kAllVisible, view, target, {}, &gradient) / target.empty_loss, 0,
+              1e-6);
+  EXPECT_LT(flatten(gradient).norm(), 1e-6 * target.empty_loss);
 }
 
 TEST(Render, ViewsTogetherAreTheSumOfTheViewsAndTheSameBytesForAnyThreads) {
@@ -178,7 +174,7 @@ TEST(Render, ViewsTogetherAreTheSumOfTheViewsAndTheSameBytesForAnyThreads) {
     View view = test_view();
     view.cam_from_world.rotation *=
         Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    targets.push_back(make_edge_target(test_edges(view), LossOptions()));
+    targets.push_back(make_edge_target(test_edges(view)));
     views.push_back(view);
   }
   Eigen::MatrixXf visibility = Eigen::MatrixXf::Constant(40, 70, 0.5f);
@@ -213,8 +209,8 @@ TEST(Render, NoViewsHaveNoLoss) {
 TEST(Render, DescentRecoversTheShiftOfALine) {
   const View view = straight_view();
   const double px = 0.05, truth = 0.37 * px;
-  const EdgeTarget target = make_edge_target(render(line(20, 2 * px, truth), kAllVisible, view, {}),
-                                             {LossKind::kSquared, 0.05, 1, 1});
+  const EdgeTarget target =
+      make_edge_target(render(line(20, 2 * px, truth), kAllVisible, view, {}));
   double shift = truth - 1.33 * px, step = 0.2 * px, first = 0, last = 0, slope_before = 0;
   for (int i = 0; i < 30; ++i) {
     SplatGradient gradient;
