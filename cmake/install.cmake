@@ -29,28 +29,9 @@ if(TARGET sketchsplat_python)
     COMPONENT library)
 endif()
 
-# Pages and completions are what the program itself says.
-set(written ${CMAKE_BINARY_DIR}/generated/share)
-file(MAKE_DIRECTORY ${written})
-function(write_by_program file option)
-  add_custom_command(OUTPUT ${written}/${file} DEPENDS sketchsplat VERBATIM
-    COMMAND sketchsplat ${option} ${ARGN} > ${written}/${file})
-  set(written_files ${written_files} ${written}/${file} PARENT_SCOPE)
-endfunction()
-write_by_program(sketchsplat.1 --man)
-write_by_program(sketchsplat --completion bash)
-write_by_program(_sketchsplat --completion zsh)
-write_by_program(sketchsplat.fish --completion fish)
-add_custom_command(OUTPUT ${written}/sketchsplat.1.gz DEPENDS ${written}/sketchsplat.1 VERBATIM
-  COMMAND gzip -9nc ${written}/sketchsplat.1 > ${written}/sketchsplat.1.gz)
-add_custom_target(pages ALL DEPENDS ${written_files} ${written}/sketchsplat.1.gz)
-
-install(FILES ${written}/sketchsplat.1.gz DESTINATION share/man/man1 COMPONENT program)
-install(FILES ${written}/sketchsplat DESTINATION share/bash-completion/completions
-  COMPONENT program)
-install(FILES ${written}/_sketchsplat DESTINATION share/zsh/vendor-completions COMPONENT program)
-install(FILES ${written}/sketchsplat.fish DESTINATION share/fish/vendor_completions.d
-  COMPONENT program)
+# ./run package makes the manual page.
+install(FILES ${CMAKE_BINARY_DIR}/package/sketchsplat.1.gz DESTINATION share/man/man1
+  COMPONENT program OPTIONAL)
 install(FILES README.md LICENSE OPTIONS.md CHANGELOG.md cmake/copyright
   DESTINATION share/doc/sketchsplat COMPONENT program)
 install(DIRECTORY docs DESTINATION share/doc/sketchsplat COMPONENT program)

@@ -96,6 +96,21 @@ void assign_text(const Field& field, const std::string& text, std::string* targe
   *target = text;
 }
 
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t above = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
 }  // namespace
 
 Field& Fields::push(const std::string& name, decltype(Field::value) value,
@@ -226,23 +241,36 @@ bool picked(const std::string& text, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string successor(const std::vector<Field>& fields, const std::string& name) {
-  const std::string word = name.rfind("no-", 0) == 0 ? name.substr(3) : name;
-  for (const Field& field : fields) {
-    for (const std::string& former : field.former)
-      if (former == name) return field.name;
-    const std::vector<std::string>& all = field.choices;
-    if (field.many && std::find(all.begin(), all.end(), word) != all.end())
-      return field.name + " " + word;
+std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
+  std::string best;
+  size_t smallest = std::max<size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const size_t distance = edit_distance(word, candidate);
+    if (distance < smallest) {
+      smallest = distance;
+      best = candidate;
+    }
   }
-  return "";
+  return best;
 }
 
-std::string unknown_option(const std::vector<Field>& fields, const std::string& name,
+std::string unknown_option(const std::vector<Field>& fields, const std::string& given,
                            const std::string& verb) {
-  const std::string now = successor(fields, name);
-  return "unknown option " + name + (now.empty() ? "" : ", replaced by " + now) +
-         " (see sketchsplat " + verb + " --help-all)";
+  const std::string flag = given.substr(0, given.find('='));
+  const std::string dashes = flag[0] == '-' ? "--" : "", no = dashes + "no-";
+  const bool negated = flag.rfind(no, 0) == 0;
+  const std::string word = flag.substr(negated ? no.size() : std::min(dashes.size(), flag.size()));
+  std::vector<std::string> names = {dashes + "help", dashes + "help-all"};
+  std::string hint;
+  for (const Field& field : fields) {
+    const std::vector<std::string>& all = field.choices;
+    if (field.many && std::find(all.begin(), all.end(), word) != all.end())
+      hint = ", replaced by " + dashes + field.name + " " + word;
+    if (!field.positional) names.push_back(dashes + field.name);
+  }
+  const std::string near = nearest_word(flag, names);
+  if (hint.empty() && !near.empty()) hint = ", did you mean " + near + "?";
+  return "unknown option " + given + hint + " (see sketchsplat " + verb + " --help-all)";
 }
 
 std::string fields_json(const std::vector<Field>& fields) {

@@ -30,12 +30,11 @@ struct Field {
   double low = -std::numeric_limits<double>::infinity();  ///< closed range of a number
   double high = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices;  ///< allowed texts; "maps:NAME" allows any text after "maps:"
-  bool many = false;  ///< the text is "none", or some of the choices with commas between
-  std::vector<std::string> former;  ///< names of options that this one stands for now
-  std::string help;                 ///< one line, no full stop
-  std::string group;                ///< heading in --help
-  std::string initial;              ///< text of the value when it was listed: the default
-  std::string short_name;           ///< "o": also -o; empty if there is none
+  bool many = false;       ///< the text is "none", or some of the choices with commas between
+  std::string help;        ///< one line, no full stop
+  std::string group;       ///< heading in --help
+  std::string initial;     ///< text of the value when it was listed: the default
+  std::string short_name;  ///< "o": also -o; empty if there is none
   bool required = false;
   std::string unless;  ///< a required option need not be given if this one is
   bool positional = false;
@@ -66,7 +65,6 @@ class Fields {
   Field& choose(const std::string& name, std::string* value,
                 const std::vector<std::string>& choices, const std::string& help);
   /// Some of `choices`, or "none": a text of them in the order of `choices`, with commas between.
-  /// Choices that were switches of their own once are found by their names, see successor().
   Field& pick(const std::string& name, std::string* value, const std::vector<std::string>& choices,
               const std::string& help);
   /// `choices` in the order of the enum's values, which count from 0.
@@ -105,12 +103,12 @@ const Field* find_field(const std::vector<Field>& fields, const std::string& nam
 /// Is it one of the words of a text that was made by Fields::pick()?
 bool picked(const std::string& text, const std::string& word);
 
-/// How the command line says now what an option that there is not any more said, without dashes:
-/// "without conics" for "no-conics". Empty if there never was one, or nothing replaces it.
-std::string successor(const std::vector<Field>& fields, const std::string& name);
+/// The candidate that is nearest to a mistyped word, or nothing if none is near.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
 
-/// A complaint that a verb has no option of this name, with its successor if there is one.
-std::string unknown_option(const std::vector<Field>& fields, const std::string& name,
+/// The complaint that a verb has no option that is called so (as given, with or without dashes):
+/// with the choice of Fields::pick() that replaces it, or the name that was probably meant.
+std::string unknown_option(const std::vector<Field>& fields, const std::string& given,
                            const std::string& verb);
 
 /// All values as one JSON object (as text), in the order of the list.

@@ -33,11 +33,19 @@ void list_all(ReconstructOptions* method, OutputOptions* output, Fields* fields)
   list_fields(output, fields);
 }
 
+// The names, one a line, as --like takes names that lie in this folder.
+std::string joined_to(const std::string& folder, const std::string& names) {
+  std::string paths = folder + "/./";
+  for (const char c : names) paths += c == '\n' ? "\n" + folder + "/./" : std::string(1, c);
+  return paths;
+}
+
 // The options of reconstruct that differ from what the preset says, as a command line.
 std::vector<std::string> worker_flags(const BatchRun& run) {
   ReconstructOptions method = run.method, preset;
   OutputOptions output = run.output, usual;
   apply_preset(method.preset, &preset);
+  if (!method.like_folder.empty()) method.like = joined_to(method.like_folder, method.like);
   Fields wanted, known;
   list_all(&method, &output, &wanted);
   list_all(&preset, &usual, &known);
@@ -48,8 +56,6 @@ std::vector<std::string> worker_flags(const BatchRun& run) {
   std::vector<std::string> flags = flags_of(texts, wanted.list);
   if (!run.open.format.empty()) flags.insert(flags.end(), {"--format", run.open.format});
   if (run.open.allow_outside) flags.push_back("--allow-outside");
-  if (!run.method.like_folder.empty())
-    flags.insert(flags.end(), {"--like-folder", run.method.like_folder});
   flags.insert(flags.end(), {"--threads", std::to_string(run.threads)});
   return flags;
 }

@@ -72,21 +72,6 @@ std::string examples(const std::vector<std::string>& lines) {
   return text;
 }
 
-size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
-
 }  // namespace
 
 std::string with_short_name(const Field& field) {
@@ -120,8 +105,6 @@ std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field
   text += option_groups(common, true);
   text += "  -h, --help                  Show this, or the help of a verb\n";
   text += "  --version                   Show the version, the commit and the libraries\n";
-  text += "  --man                       Show the manual page, for man -l -\n";
-  text += "  --completion SHELL          Show what completes words in bash, zsh or fish\n";
   text +=
       "\nExit status: 0 done, 2 wrong usage, 3 unusable input, 4 too little in the scene,\n"
       "5 output cannot be written, 6 a batch of which some scenes failed, 7 inspected and not all "
@@ -133,26 +116,13 @@ std::string program_help(const std::vector<Verb>& verbs, const std::vector<Field
 std::string verb_help(const Verb& verb, const std::vector<Field>& common, bool all) {
   const auto experts = std::count_if(verb.fields.begin(), verb.fields.end(),
                                      [](const Field& field) { return field.expert; });
-  std::string text = examples(verb.examples) + "\n" + verb.summary + ".\n\nUsage: " +
-                     usage_line(verb) + "\n" + option_groups(verb.fields, all);
+  std::string text = examples(verb.examples) + "\n" + verb.summary +
+                     ".\n\nUsage: " + usage_line(verb) + "\n" + option_groups(verb.fields, all);
   if (experts == 0 || all) return text + option_groups(common, true);
   text += "\nEverywhere:";  // a line for all of them: sketchsplat --help explains them
   for (const Field& field : common) text += " " + with_short_name(field);
   return text + "\n--help-all shows " + std::to_string(experts) +
          " more options, for experts, and explains these.\n";
-}
-
-std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best;
-  size_t smallest = std::max<size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const size_t distance = edit_distance(word, candidate);
-    if (distance < smallest) {
-      smallest = distance;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 std::string options_markdown(const std::vector<Verb>& verbs) {

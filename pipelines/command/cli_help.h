@@ -21,7 +21,4 @@ std::string usage_line(const Verb& verb);
 /// An option with what stands behind it: "-o, --out DIR".
 std::string with_short_name(const Field& field);
 
-/// The candidate that is nearest to a mistyped word, or nothing if none is near.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
-
 }  // namespace sketchsplat

@@ -21,7 +21,6 @@ namespace sketchsplat {
 /// Where edges come from, and the options of everything that may find them.
 struct DetectionOptions {
   int seed = 0;  ///< of everything that is drawn at random: starts, trials of RANSAC
-  std::string without = "none";  ///< steps that are left out, as the user names them, see steps.h
   /// "image": the pictures; "geometry": depth and normal maps in the scene's folder; "2dgs-sn":
   /// depth and normals of surfels fitted to the pictures; "maps:NAME": edge maps of others.
   std::string detector = "image";
@@ -30,6 +29,7 @@ struct DetectionOptions {
   MapOptions maps;
   GeometryOptions geometry;
   SurfelFieldOptions surfels;
+  std::string surfel;  ///< what the user changes of these: "kernel=skew-normal,count=2000"
   double surfel_snap_px =
       3.0;  ///< [px] an edge of the picture says where one of surfels is; 0: never
 };

@@ -17,7 +17,7 @@ struct CommonOptions {
   bool verbose = false;
   bool json = false;                ///< results on standard output as JSON
   std::string log;                  ///< file for everything that is said, too; empty: none
-  std::string config, save_config;  ///< files of options, see config_file.h; empty: none
+  std::string config, save_config;  ///< files of options, in TOML; empty: none
 };
 
 /// As in options.h.

@@ -28,6 +28,7 @@ namespace sketchsplat {
 
 /// Everything that decides what `reconstruct` computes. Stage structs are members of this one.
 struct ReconstructOptions : DetectionOptions {
+  std::string without = "none";  ///< steps that are left out, as the user names them
   std::string preset = "balanced";
   /// Pictures at least twice as large are made smaller, to no less than this [px], see
   /// smaller_pictures.h; 0: never.
@@ -60,7 +61,7 @@ struct ReconstructOptions : DetectionOptions {
   double blend_px = 40;           ///< [px] largest radius of one
   bool inferred = true;           ///< edges that no image shows and the solid implies
   std::string like;               ///< sketches of siblings, one a line; empty: none
-  std::string like_folder;        ///< that these are below, if their paths are relative; not told
+  std::string like_folder;        ///< that these are below, if they are relative; not recorded
   double min_confidence = 0;      ///< probability below which a stroke is left out at last
   std::string box_text = "auto";  ///< as the user gives it
   Eigen::AlignedBox3d box;  ///< world units: only what is in it is the object; empty: found out

@@ -5,7 +5,6 @@
 
 #include "pipelines/base/fields.h"
 #include "sketches/io/length_unit.h"
-#include "topology/faces/planar_faces.h"
 
 namespace sketchsplat {
 
@@ -16,16 +15,13 @@ struct CadOptions {
   std::string scale_by = "none";              ///< what tells the scale instead, see known_scale.h
   bool unit_given = false, scale_given = false;  ///< by the user
   bool faces = false;                            ///< closed planar loops as faces, in STEP
-  PlanarFaceOptions face;
 };
 
 /// What is written beside the sketch, and how.
 struct OutputOptions {
-  int overlays = 4;              ///< views that are drawn over
-  double point_spacing = 0.005;  ///< fraction of the sketch's largest extent
-  bool shell = false;            ///< the faces that are sure, where they do not close to a solid
-  bool reproducible = false;     ///< no times, memory and threads in the reports
-  CadOptions cad;                ///< of sketch.step
+  int overlays = 4;           ///< views that are drawn over
+  bool reproducible = false;  ///< no times, memory and threads in the reports
+  CadOptions cad;             ///< of sketch.step
 };
 
 /// As in options.h.

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +13,6 @@
 #include <exception>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <opencv2/core.hpp>
 #include <typeinfo>
 
@@ -23,9 +21,6 @@
 #include "pipelines/base/version.h"
 #include "pipelines/batch/run.h"
 #include "pipelines/command/cli_help.h"
-#include "pipelines/command/completion.h"
-#include "pipelines/command/config_file.h"
-#include "pipelines/command/manual.h"
 
 namespace sketchsplat {
 namespace {
@@ -34,33 +29,44 @@ constexpr char kOutOfMemory[] = "out of memory";
 
 using Texts = std::map<std::string, std::string>;  // option -> what the user gave
 
+// Belongs to one run, not to a way of working: no file of options may hold it.
+bool is_of_one_run(const Field& field) {
+  return field.positional || field.required || field.alone || field.name == "log" ||
+         field.name == "save-config" || field.name == "dry-run";
+}
+
 // Lets CLI11 collect the texts of these fields; values are parsed by assign(), in one place.
-void register_fields(CLI::App* app, const std::vector<Field>& fields, Texts* texts) {
+void register_fields(CLI::App* app, const std::vector<Field>& fields) {
   for (const Field& field : fields) {
-    const std::string name = field.name;
-    if (std::holds_alternative<bool*>(field.value)) {
-      const std::string short_flag = field.short_name.empty() ? "" : "-" + field.short_name + ",";
-      app->add_flag_callback(short_flag + "--" + name, [=] { (*texts)[name] = "true"; });
-      app->add_flag_callback("--no-" + name, [=] { (*texts)[name] = "false"; });
-      continue;
-    }
-    std::string flags = field.positional ? name : "--" + name;
-    if (!field.short_name.empty()) flags = "-" + field.short_name + "," + flags;
-    if (field.several || field.value_optional) {
-      CLI::Option* option = app->add_option_function<std::vector<std::string>>(
-          flags, [=](const std::vector<std::string>& given) {
-            std::string& all = (*texts)[name];
-            for (const std::string& text : given) all += (all.empty() ? "" : "\n") + text;
-            if (field.value_optional && all.empty()) all = "-";
-          });
-      option->allow_extra_args(field.positional || field.takes_more);
-      if (field.value_optional) option->expected(0, 1)->take_last();
-      continue;
-    }
-    CLI::Option* option = app->add_option_function<std::string>(
-        flags, [=](const std::string& text) { (*texts)[name] = text; });
-    option->take_last()->type_name("value");
+    const std::string short_name = field.short_name.empty() ? "" : "-" + field.short_name + ",";
+    CLI::Option* option = nullptr;
+    if (field.name == "config")
+      option = app->set_config("--config")->take_last();
+    else if (std::holds_alternative<bool*>(field.value))
+      option = app->add_flag(short_name + "--" + field.name + ",!--no-" + field.name);
+    else
+      option = app->add_option(field.positional ? field.name : short_name + "--" + field.name);
+    if (field.several)
+      option->expected(1, -1)->take_all()->allow_extra_args(field.positional || field.takes_more);
+    else
+      option->take_last();
+    if (field.value_optional) option->expected(0, 1);
+    if (field.name != "config") option->configurable(!is_of_one_run(field));
   }
+}
+
+// Of the command line and, if that leaves an option out, of the file of --config.
+Texts texts_of(const CLI::App& app, const std::vector<Field>& fields) {
+  Texts texts;
+  for (const Field& field : fields) {
+    const CLI::Option* option = app.get_option(field.positional ? field.name : "--" + field.name);
+    if (option->count() == 0) continue;
+    std::string& all = texts[field.name];
+    for (const std::string& text : option->reduced_results())
+      all += (all.empty() ? "" : "\n") + text;
+    if (field.value_optional && all.empty()) all = "-";
+  }
+  return texts;
 }
 
 void assign_texts(const std::vector<Field>& fields, const Texts& texts) {
@@ -70,28 +76,6 @@ void assign_texts(const std::vector<Field>& fields, const Texts& texts) {
     assign(field, given->second);
     if (field.applied) field.applied();
   }
-}
-
-// What --config names comes first, so that the command line has the last word.
-void assign_all(const CommonOptions& common, const Verb& verb,
-                const std::vector<Field>& common_fields, const Texts& texts,
-                const Texts& common_texts) {
-  assign_texts(common_fields, common_texts);
-  if (!common.config.empty()) {
-    const std::string config = common.config;
-    std::vector<Field> fields = common_fields;
-    fields.insert(fields.end(), verb.fields.begin(), verb.fields.end());
-    try {
-      assign_texts(fields, read_config(config, verb.name, fields));
-    } catch (const UsageError& e) {
-      throw InputError(config, "options as on the command line", e.what());
-    }
-    assign_texts(common_fields, common_texts);
-  }
-  assign_texts(verb.fields, texts);
-  if (common.save_config.empty()) return;
-  const std::string text = config_text(verb.name, verb.fields);
-  write_atomically(common.save_config, [&](std::ostream& out) { out << text; });
 }
 
 void check_required(const Verb& verb, const Texts& texts) {
@@ -109,18 +93,8 @@ void check_required(const Verb& verb, const Texts& texts) {
 // CLI11 leaves what it does not know in remaining().
 [[noreturn]] void refuse_extra(const std::string& extra, const std::vector<Field>& fields,
                                const std::string& verb) {
-  std::vector<std::string> flags = {"--help", "--help-all", "--version"};
-  for (const Field& field : fields)
-    if (!field.positional) flags.push_back("--" + field.name);
-  const bool is_flag = extra.size() > 1 && extra[0] == '-';
-  const std::string flag = extra.substr(0, extra.find('='));
-  const std::string near = is_flag ? nearest_word(flag, flags) : "";
-  const std::string now = flag.rfind("--", 0) == 0 ? successor(fields, flag.substr(2)) : "";
-  throw UsageError((is_flag ? "unknown option " : "unexpected argument ") + extra +
-                   (!now.empty()   ? ", replaced by --" + now
-                    : near.empty() ? ""
-                                   : ", did you mean " + near + "?") +
-                   " (see sketchsplat " + (verb.empty() ? "" : verb + " ") + "--help)");
+  if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknown_option(fields, extra, verb));
+  throw UsageError("unexpected argument " + extra + " (see sketchsplat " + verb + " --help)");
 }
 
 std::string verb_names(const std::vector<Verb>& verbs) {
@@ -145,9 +119,7 @@ Progress::Mode progress_mode(const CommonOptions& common) {
 // The parser of the whole program; its shape is the verbs'.
 struct Parser {
   CLI::App app;
-  Texts texts, common_texts;  // of the verb, of all verbs: they may share names
-  bool help = false, help_all = false, version = false, markdown = false, manual = false;
-  std::string completion;  // a shell
+  bool help = false, help_all = false, version = false, markdown = false;
   std::vector<CLI::App*> subcommands;
 
   Parser(const std::vector<Verb>& verbs, const std::vector<Field>& common) {
@@ -156,50 +128,83 @@ struct Parser {
     app.add_flag("--help-all", help_all);
     app.add_flag("--version", version);
     app.add_flag("--options-markdown", markdown);
-    app.add_flag("--man", manual);
-    app.add_option("--completion", completion);
     app.allow_extras();
-    register_fields(&app, common, &common_texts);
+    app.allow_config_extras(CLI::config_extras_mode::error);
+    register_fields(&app, common);
     for (const Verb& verb : verbs) {
       CLI::App* sub = app.add_subcommand(verb.name);
       sub->set_help_flag();
       sub->fallthrough();
-      register_fields(sub, verb.fields, &texts);
+      register_fields(sub, verb.fields);
       subcommands.push_back(sub);
     }
   }
+
+  void parse(int argc, const char* const* argv) {
+    const auto file = [&] { return app.get_option("--config")->results().back(); };
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::FileError&) {
+      throw InputError(file(), "a file of options", "none that can be read");
+    } catch (const CLI::ConfigError& e) {
+      throw InputError(file(), "lines NAME = VALUE, those of a verb below a line [VERB]", e.what());
+    }
+  }
 };
+
+// Assigns all options and does the work of the verb.
+void run_verb(const Verb& verb, const Parser& parser, const CLI::App& sub, CommonOptions* common,
+              const std::vector<Field>& common_fields) {
+  const Texts texts = texts_of(sub, verb.fields);
+  check_required(verb, texts);
+  try {
+    assign_texts(common_fields, texts_of(parser.app, common_fields));
+    assign_texts(verb.fields, texts);
+  } catch (const UsageError& e) {
+    if (common->config.empty()) throw;
+    throw UsageError(e.what() + std::string(", on the command line or in ") + common->config);
+  }
+  if (!common->save_config.empty())
+    write_atomically(common->save_config, [&](std::ostream& out) {
+      out << "[" << verb.name << "]\n" << sub.config_to_str();
+    });
+  if (common->threads > 0) omp_set_num_threads(common->threads);
+  Progress progress(progress_mode(*common), common->verbose && !common->quiet);
+  progress.use_color(Progress::stderr_has_color());
+  if (!common->log.empty()) progress.log_to(common->log);
+  try {
+    verb.run(*common, &progress);
+  } catch (const std::exception& e) {
+    progress.log(e.what());
+    throw;
+  }
+  progress.repeat_warnings();
+}
 
 void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
   CommonOptions common;
   Fields common_fields;
   list_fields(&common, &common_fields);
   Parser parser(verbs, common_fields.list);
-  parser.app.parse(argc, argv);
+  parser.parse(argc, argv);
 
   const Verb* verb = nullptr;
+  const CLI::App* sub = nullptr;
   for (size_t i = 0; i < verbs.size(); ++i)
-    if (parser.subcommands[i]->parsed()) verb = &verbs[i];
+    if (parser.subcommands[i]->parsed()) verb = &verbs[i], sub = parser.subcommands[i];
   const std::vector<std::string> extras = parser.app.remaining(true);
   // "sketchsplat help reconstruct", as in COLMAP.
   const bool help_word = argc > 1 && std::string(argv[1]) == "help";
+  const bool help = parser.help || parser.help_all;
 
   if (parser.version) {
     std::cout << "sketchsplat " << program_version() << "\ncommit " << program_commit() << "\nwith "
               << library_versions() << "\n";
   } else if (parser.markdown) {
     std::cout << options_markdown(verbs);
-  } else if (parser.manual) {
-    std::cout << manual_page(verbs, common_fields.list);
-  } else if (!parser.completion.empty()) {
-    const std::vector<std::string>& shells = completion_shells();
-    if (std::find(shells.begin(), shells.end(), parser.completion) == shells.end())
-      throw UsageError("--completion: expected bash, zsh or fish, got '" + parser.completion + "'");
-    std::cout << completion_script(parser.completion, verbs, common_fields.list);
-  } else if ((parser.help || parser.help_all || help_word) && verb) {
+  } else if ((help || help_word) && verb) {
     std::cout << verb_help(*verb, common_fields.list, parser.help_all);
-  } else if (((parser.help || parser.help_all) && extras.empty()) ||
-             (help_word && extras.size() == 1)) {
+  } else if ((help && extras.empty()) || (help_word && extras.size() == 1)) {
     std::cout << program_help(verbs, common_fields.list);
   } else if (!verb) {
     if (extras.empty()) throw UsageError("expected a verb: " + verb_names(verbs));
@@ -211,19 +216,7 @@ void run(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
       known.insert(known.end(), common_fields.list.begin(), common_fields.list.end());
       refuse_extra(extras[0], known, verb->name);
     }
-    check_required(*verb, parser.texts);
-    assign_all(common, *verb, common_fields.list, parser.texts, parser.common_texts);
-    if (common.threads > 0) omp_set_num_threads(common.threads);
-    Progress progress(progress_mode(common), common.verbose && !common.quiet);
-    progress.use_color(Progress::stderr_has_color());
-    if (!common.log.empty()) progress.log_to(common.log);
-    try {
-      verb->run(common, &progress);
-    } catch (const std::exception& e) {
-      progress.log(e.what());
-      throw;
-    }
-    progress.repeat_warnings();
+    run_verb(*verb, parser, *sub, &common, common_fields.list);
   }
 }
 
@@ -234,9 +227,9 @@ int complain(ExitStatus status, const std::string& text) {
   return status;
 }
 
-// Some libraries ask for memory in destructors (Open CASCADE's sessions, JSON, Ceres' timers),
-// which no exception can leave: this is what is left to say then. The compiler does not always
-// tell which exception it was. All else is a defect, and worth a core.
+// Some libraries allocate in destructors (Open CASCADE's sessions, JSON, Ceres' timers), which no
+// exception can leave. The compiler does not always name the exception. Any other one is a defect
+// and should leave a core file.
 [[noreturn]] void end_without_memory() {
   const std::type_info* const type = abi::__cxa_current_exception_type();
   const char* const name = type ? type->name() : "";
@@ -244,7 +237,7 @@ int complain(ExitStatus status, const std::string& text) {
   if (!unknown && !std::strstr(name, "bad_alloc") && !std::strstr(name, "OutOfMemory"))
     std::abort();
   std::fprintf(stderr, "sketchsplat: %s\n",
-               unknown ? "a destructor failed, most likely for want of memory" : kOutOfMemory);
+               unknown ? "a destructor failed, most likely out of memory" : kOutOfMemory);
   ::_exit(kDefect);
 }
 
@@ -280,7 +273,7 @@ int run_command_line(int argc, const char* const* argv, const std::vector<Verb>&
     return complain(kNotAllIn, e.what());
   } catch (const Interrupted& e) {
     complain(kDefect, e.what());
-    std::signal(e.number, SIG_DFL);  // whoever waits for us shall know
+    std::signal(e.number, SIG_DFL);  // so that the parent process sees it
     std::raise(e.number);
     return 128 + e.number;
   } catch (const std::bad_alloc&) {
@@ -291,7 +284,7 @@ int run_command_line(int argc, const char* const* argv, const std::vector<Verb>&
   } catch (const std::exception& e) {
     return complain(kDefect, std::string("a defect of the program: ") + e.what());
   } catch (...) {
-    return complain(kDefect, "a defect of the program: an exception without a word");
+    return complain(kDefect, "a defect of the program: an unknown exception");
   }
 }
 

@@ -47,8 +47,8 @@ void write_geometry_maps(const std::string& out, const View& view, const Geometr
   const std::string name = std::filesystem::path(view.name).replace_extension().string();
   const std::string depth = out + "/depth/" + name, normal = out + "/normal/" + name;
   write_exr(depth + ".exr", {{"Z", maps.depth}}, /*half=*/false);
-  write_exr(normal + ".exr",
-            {{"R", maps.normal[0]}, {"G", maps.normal[1]}, {"B", maps.normal[2]}}, /*half=*/true);
+  write_exr(normal + ".exr", {{"R", maps.normal[0]}, {"G", maps.normal[1]}, {"B", maps.normal[2]}},
+            /*half=*/true);
   write_png(depth + ".png", depth_picture(maps.depth));
   write_png(normal + ".png", normal_picture(maps));
   write_exr(out + "/alpha/" + name + ".exr", {{"A", maps.alpha}}, /*half=*/true);

@@ -17,6 +17,7 @@
 #include "pipelines/results/solid_output.h"
 #include "sketches/io/io.h"
 #include "sketches/io/json.h"
+#include "topology/faces/planar_faces.h"
 
 namespace sketchsplat {
 namespace fs = std::filesystem;
@@ -127,7 +128,6 @@ SolidOutputOptions solid_options(const Reconstruction& reconstruction, const Sce
   out.scale = scale;
   out.sigma.footprint = footprint_of(reconstruction);
   out.sigma.bias_px = typical_bias_px(reconstruction.sketch);
-  out.shell = options.shell;
   out.extra = json_text(extra);
   return out;
 }
@@ -157,7 +157,7 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
   write_atomically(folder + "/sketch.step",
                    [&](std::ostream& out) { write_step(out, sketch, step); });
   const double size = sketch_extent(sketch).size;
-  const double spacing = options.point_spacing * (size > 0 ? size : 1);
+  const double spacing = kPointSpacing * (size > 0 ? size : 1);
   write_atomically(folder + "/edge_points.ply",
                    [&](std::ostream& out) { write_edge_points(out, sketch, spacing); });
 }
@@ -186,7 +186,7 @@ StepOptions step_options(const Sketch& sketch, const std::string& name, const Ca
   step.name = name;
   step.scale = options.scale;
   step.unit = options.unit;
-  if (options.faces) step.faces = planar_faces(sketch, options.face);
+  if (options.faces) step.faces = planar_faces(sketch);
   return step;
 }
 
@@ -211,8 +211,6 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
     write_sketch(folder, reconstruction, scene, fields_json(method.list), scale, output_options);
     solid = write_solid(folder, reconstruction.solid,
                         solid_options(reconstruction, scene, scale, output_options));
-    if (solid.shell_asked && !solid.shell_written)
-      log.warn("no shell is written: " + solid.why_no_shell);
     write_cameras(folder + "/cameras", reconstruction.refined);
     remove_old_overlays(folder);
     Scene seen = scene;

@@ -14,6 +14,8 @@
 
 namespace sketchsplat {
 
+constexpr double kPointSpacing = 0.005;  ///< of the samples in edge_points.ply, of the extent
+
 /// Writes everything that `reconstruct` promises into the folder: sketch.json,
 /// parametric_edges.json, sketch.obj, cameras/ (if they were refined), sketch.step,
 /// edge_points.ply, the files of write_solid() (if the strokes tell one), overlay_<view>.png,

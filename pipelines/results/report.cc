@@ -132,7 +132,7 @@ Json viewpoints_json(const std::vector<Eigen::Vector3d>& viewpoints, const Exten
   return directions;
 }
 
-// Triangles of the faces of the solid or the shell, for the screen, relative to the extent.
+// Triangles of the faces of the solid, for the screen, relative to the extent.
 Json face_json(const FaceMesh& mesh, SurfaceKind kind, const Extent& extent) {
   Json points = Json::array(), triangles = Json::array();
   for (const Eigen::Vector3d& p : mesh.points)
@@ -147,7 +147,7 @@ Json faces_json(const SolidOutcome* solid, const Extent& extent) {
   constexpr size_t kMostBytes = 300'000;  // of a page of 3 MB
   Json faces = Json::array();
   if (!solid || !(extent.size > 0)) return faces;
-  const Solid& shown = solid->written ? *solid->search.solid : *solid->search.shell;
+  const Solid& shown = *solid->search.solid;
   for (size_t f = 0; f < solid->mesh.size(); ++f)
     faces.push_back(face_json(solid->mesh[f], shown.surfaces[shown.faces[f].surface].kind, extent));
   return json_text(faces).size() > kMostBytes ? Json::array() : faces;

@@ -18,8 +18,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr double kDeflection = 2e-3;  // of the extent: of meshes to look at
-constexpr const char* kFiles[] = {"/solid.step", "/solid.json", "/surfaces.csv", "/dimensions.csv",
-                                  "/shell.step"};
+constexpr const char* kFiles[] = {"/solid.step", "/solid.json", "/surfaces.csv", "/dimensions.csv"};
 
 void write_text(const std::string& path, const std::string& text) {
   write_atomically(path, [&](std::ostream& out) { out << text; });
@@ -53,17 +52,6 @@ void write_tables(const std::string& folder, const SolidOutputOptions& options, 
   });
 }
 
-void write_shell(const std::string& folder, const SolidOutputOptions& options, SolidOutcome* out) {
-  out->why_no_shell = "no face is sure, by the second-best choice, curves left over and masks";
-  if (!out->search.shell) return;
-  StepSolidOptions step = options.step;
-  step.open = true;
-  out->shell_check = checked(*out->search.shell, folder + "/shell.step", step);
-  out->shell_written = out->shell_check.valid;
-  out->why_no_shell = out->shell_check.why;
-  if (out->shell_written) out->mesh = brep_plugin().mesh_solid(*out->search.shell, kDeflection);
-}
-
 }  // namespace
 
 SolidOutcome write_solid(const std::string& folder, const SolidSearch& search,
@@ -82,8 +70,6 @@ SolidOutcome write_solid(const std::string& folder, const SolidSearch& search,
     out.mesh = brep_plugin().mesh_solid(*search.solid, kDeflection);
     write_tables(folder, options, &out);
   }
-  out.shell_asked = options.shell && !out.written;
-  if (out.shell_asked) write_shell(folder, options, &out);
   return out;
 }
 
@@ -94,20 +80,6 @@ std::map<std::string, int> faces_by_kind(const Solid& solid) {
   for (const SolidFace& face : solid.faces)
     ++faces[surface_name(solid.surfaces[face.surface].kind)];
   return faces;
-}
-
-Json shell_json(const SolidOutcome& outcome) {
-  Json json = {{"written", outcome.shell_written}};
-  if (!outcome.shell_written) json["why"] = outcome.why_no_shell;
-  if (!outcome.search.shell) return json;
-  json["faces"] = faces_by_kind(*outcome.search.shell);
-  json["faces_sure"] = outcome.search.shell->faces.size();
-  json["faces_of_best"] = outcome.search.faces;
-  if (outcome.shell_written) {
-    json["area"] = outcome.shell_check.area;
-    json["tolerance"] = outcome.shell_check.tolerance;
-  }
-  return json;
 }
 
 }  // namespace
@@ -138,7 +110,6 @@ std::string solid_json(const SolidOutcome& outcome) {
     json["surfaces"] = parse_json<Json>(surfaces_json(*outcome.tables));
     json["dimensions"] = parse_json<Json>(dimensions_json(*outcome.tables));
   }
-  if (outcome.shell_asked) json["shell"] = shell_json(outcome);
   return json_text(json);
 }
 

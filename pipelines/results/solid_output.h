@@ -21,11 +21,7 @@ struct SolidOutcome {
   bool written = false;
   std::string why;                    ///< if not: a clause
   std::optional<SolidTables> tables;  ///< of the solid that was written
-  std::vector<FaceMesh> mesh;         ///< of the solid, or the shell, that was written
-
-  bool shell_asked = false, shell_written = false;
-  SolidCheck shell_check;
-  std::string why_no_shell;  ///< a clause
+  std::vector<FaceMesh> mesh;         ///< of the solid that was written
 };
 
 /// How solids are written, and what is known beside them.
@@ -33,19 +29,18 @@ struct SolidOutputOptions {
   StepSolidOptions step;
   KnownScale scale;
   SigmaModel sigma;          ///< of the strokes, without alignment
-  bool shell = false;        ///< if no solid is written: the faces that are sure
   std::string extra = "{}";  ///< JSON object: further members of solid.json
 };
 
 /// Checks the solid that was found and writes it to `folder`: solid.step, solid.json, surfaces.csv
-/// and dimensions.csv; or, if it is asked for, the shell: shell.step. What is not valid is not
-/// written, and files of an earlier run go. Throws OutputError.
+/// and dimensions.csv. What is not valid is not written, and files of an earlier run go. Throws
+/// OutputError.
 SolidOutcome write_solid(const std::string& folder, const SolidSearch& search,
                          const SolidOutputOptions& options);
 
 /// JSON object: written, why, curves in doubt, numbers of faces by surface, volume, area and
 /// tolerance in world units, inferred edges, margin in nats, surfaces and dimensions as in their
-/// tables; the shell, if it was asked for.
+/// tables.
 std::string solid_json(const SolidOutcome& outcome);
 
 }  // namespace sketchsplat

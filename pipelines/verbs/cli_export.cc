@@ -31,7 +31,7 @@ struct ExportArguments {
   CadOptions cad;
   double min_confidence = 0;
   double deflection = 1e-4;
-  double spacing = OutputOptions().point_spacing;
+  double spacing = kPointSpacing;
 };
 
 constexpr char kNoTags[] = "--scale-by tag is for reconstruct: a sketch holds no tags";
@@ -180,6 +180,7 @@ Verb export_verb() {
         "Largest distance of a chord to its curve in OBJ");
   f.add("spacing", &arguments->spacing, "of the extent", 1e-5, 1, "Distance of the samples in PLY");
   list_fields(&arguments->cad, &f);
+  f.add("faces", &arguments->cad.faces, "Write closed planar loops as faces in STEP");
   Verb verb;
   verb.name = "export";
   verb.summary = "Write a sketch in another format";

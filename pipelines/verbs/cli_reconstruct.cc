@@ -195,10 +195,8 @@ Verb reconstruct_verb() {
   f.add("allow-outside", &arguments->open.allow_outside,
         "Read images that the scene file places outside of its folder, too")
       .expert = true;
-  f.add("dry-run", &arguments->dry_run, "Say what would be read, and what it takes");
-  f.add("like-folder", &arguments->method.like_folder, "DIR",
-        "Relative paths of --like begin in this folder, which results do not tell")
-      .expert = true;
+  f.add("dry-run", &arguments->dry_run,
+        "Say what would be read, and what it takes");
   f.add("images", &arguments->images, "DIR",
         "Photographs without cameras: COLMAP finds them first");
   f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");

@@ -77,9 +77,9 @@ TEST_F(Library, ThreadsChangeNothingAndAreGivenBack) {
 TEST_F(Library, ExpertOptionsCountAndWrongOnesAreRefused) {
   Options options;
   options.preset = "fast";
-  options.expert["min-length"] = "1000";
+  options.expert["min-views"] = "1000";
   EXPECT_EQ(reconstruct(views_, options).ending, Ending::kTooLittle);
-  options.expert = {{"min-lenght", "1000"}};
+  options.expert = {{"min-veiws", "1000"}};
   EXPECT_THROW(reconstruct(views_, options), std::invalid_argument);
   options.expert = {{"conics", "false"}};  // is --without conics
   EXPECT_THROW(reconstruct(views_, options), std::invalid_argument);

@@ -116,8 +116,8 @@ TEST(Suite, LevelsOfADropAreNumbersOrTrueAndFalse) {
 
 TEST(Flags, AreWhatAUserWouldType) {
   const std::vector<Field> fields = reconstruct_verb().fields;
-  EXPECT_THAT(flags_of({{"preset", "fast"}, {"inferred", "false"}, {"param.gap", "0.1"}}, fields),
-              ElementsAre("--preset", "fast", "--no-inferred", "--param", "gap=0.1"));
+  EXPECT_THAT(flags_of({{"preset", "fast"}, {"blends", "true"}, {"param.gap", "0.1"}}, fields),
+              ElementsAre("--preset", "fast", "--blends", "--param", "gap=0.1"));
   EXPECT_THAT(flags_of({{"noise", "2"}, {"part", "box"}}, synthesize_verb().fields),
               ElementsAre("box", "--noise", "2"));
 }

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "pipelines/command/config_file.h"
-
+// Files of options: --save-config and --config.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/types/errors.h"
 #include "tests/pipelines/program.h"
 
 namespace sketchsplat {
 namespace {
 
 using testing::AllOf;
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Pair;
 
 // What a dry run with these arguments would save as options.
 class Config : public Program {
@@ -29,11 +25,11 @@ class Config : public Program {
     std::ofstream(in_folder("options.toml")) << text;
     return in_folder("options.toml");
   }
-  void expect_refused(const std::string& text, const std::string& why) const {
+  void expect_refused(const std::string& text, ExitStatus status, const std::string& why) const {
     const Outcome o = run("reconstruct " + scene() + " --out " + in_folder("dry") +
                           " --dry-run --config " + file_of(text));
-    EXPECT_EQ(o.status, kBadInput) << text;
-    EXPECT_THAT(o.err, AllOf(HasSubstr("options.toml: "), HasSubstr(why))) << text;
+    EXPECT_EQ(o.status, status) << text;
+    EXPECT_THAT(o.err, AllOf(HasSubstr("options.toml"), HasSubstr(why))) << text;
     EXPECT_EQ(count_lines(o.err), 1) << o.err;
   }
 };
@@ -41,71 +37,30 @@ class Config : public Program {
 TEST_F(Config, WhatIsSavedIsReadAgain) {
   EXPECT_EQ(saved(""), "[reconstruct]\n");
   const std::string some = saved(
-      "--detector geometry --min-nats 2.5 --without close,conics --like 'a b.json' --like c.json");
-  EXPECT_EQ(
-      some,
-      "[reconstruct]\ndetector = \"geometry\"\n"
-      "like = [\"a b.json\", \"c.json\"]\nwithout = [\"conics\", \"close\"]\nmin-nats = 2.5\n");
+      "--detector geometry --lift-views 30 --blends --without close,conics --min-confidence "
+      "0.5 --like 'a b.json' --like c.json --no-reproducible");
+  EXPECT_THAT(some, AllOf(HasSubstr("detector=\"geometry\"\n"), HasSubstr("lift-views=30\n"),
+                          HasSubstr("like=[\"a b.json\", \"c.json\"]\n"),
+                          HasSubstr("blends=true\n"), HasSubstr("reproducible=false\n")));
+  EXPECT_THAT(some, testing::Not(HasSubstr("out=")));
   EXPECT_EQ(saved("--config " + file_of(some)), some);
 }
 
-TEST_F(Config, TheCommandLineHasTheLastWordAndOtherVerbsTheirOwnSections) {
-  const std::string file =
-      file_of("min-nats = 3 # comment\n[reconstruct]\nmin-length = 7\n[batch]\njobs = 2\n");
-  EXPECT_EQ(saved("--min-nats 1 --config " + file),
-            "[reconstruct]\nmin-nats = 1\nmin-length = 7\n");
+TEST_F(Config, TheCommandLineOverridesTheFileAndOtherVerbsHaveTheirOwnSections) {
+  const std::string file = file_of(
+      "threads = 1 # of all verbs\n[reconstruct]\nrounds = 3\nmin-views = 7\n[batch]\njobs = 2\n");
+  EXPECT_EQ(saved("--rounds 1 --config " + file), "[reconstruct]\nmin-views=7\nrounds=1\n");
 }
 
 TEST_F(Config, WhatIsNoOptionIsRefusedInOneLine) {
-  expect_refused("min-natz = 3\n", "found 'min-natz', did you mean min-nats?");
-  expect_refused("min-nats = much\n", "min-nats");
-  expect_refused("min-nats = [1, 2]\n", "expected one value of min-nats, found 2");
-  expect_refused("conics = false\n", "found 'conics', replaced by --without conics");
-  expect_refused("map-min-chain = 3\n", "found 'map-min-chain', replaced by --detect-min-chain");
-  expect_refused("without = [\"close\", \"conic\"]\n", "got 'conic'");
-  expect_refused("out = \"elsewhere\"\n", "found 'out'");
-  expect_refused("config = \"options.toml\"\n", "found 'config'");
-  fs::remove(in_folder("options.toml"));
-  const Outcome none = run("reconstruct " + scene() + " --out " + in_folder("dry") +
-                           " --config " + in_folder("options.toml"));
+  expect_refused("[reconstruct]\nmin-veiws = 3\n", kBadInput, "min-veiws");
+  expect_refused("rounds = 3\n", kBadInput, "those of a verb below a line [VERB]");
+  expect_refused("[reconstruct]\nrounds = much\n", kWrongUsage, "--rounds: expected a whole");
+  expect_refused("[reconstruct]\nwithout = [\"close\", \"conic\"]\n", kWrongUsage, "got 'conic'");
+  expect_refused("[reconstruct]\nout = \"elsewhere\"\n", kBadInput, "out");
+  const Outcome none = run("reconstruct " + scene() + " --out x --config " + in_folder("gone"));
   EXPECT_EQ(none.status, kBadInput);
-  EXPECT_THAT(none.err, HasSubstr("expected a file of options, found none"));
-}
-
-// Without the program: options of every kind.
-struct ConfigFile : Config {
-  ConfigFile() {
-    fields.add("count", &count, "", 0, 9, "");
-    fields.add("on", &on, "");
-    fields.add("names", &names, "NAME", "").several = true;
-    fields.choose("kind", &kind, {"a", "b"}, "");
-  }
-  int count = 3;
-  bool on = true;
-  std::string names, kind = "a";
-  Fields fields;
-};
-
-TEST_F(ConfigFile, DefaultsAreNotWrittenAndAllElseIsAsItWasGiven) {
-  EXPECT_EQ(config_text("verb", fields.list), "[verb]\n");
-  count = 4, on = false, names = "one\ntwo's", kind = "b";
-  const std::string text = config_text("verb", fields.list);
-  EXPECT_EQ(text,
-            "[verb]\ncount = 4\non = false\nnames = [\"one\", \"two's\"]\nkind = \"b\"\n");
-  EXPECT_THAT(read_config(file_of(text), "verb", fields.list),
-              ElementsAre(Pair("count", "4"), Pair("kind", "b"), Pair("names", "one\ntwo's"),
-                          Pair("on", "false")));
-  EXPECT_TRUE(read_config(file_of(text), "other", fields.list).empty());
-}
-
-TEST_F(ConfigFile, ATextThatNoFileCanHoldIsRefused) {
-  kind = "b", names = "\"'";
-  EXPECT_THROW(config_text("verb", fields.list), UsageError);
-}
-
-TEST_F(ConfigFile, AFolderOrAHugeFileIsNoFileOfOptions) {
-  EXPECT_THROW(read_config(in_folder(""), "verb", fields.list), InputError);
-  EXPECT_THROW(read_config(file_of(std::string(2 << 20, '#')), "verb", fields.list), InputError);
+  EXPECT_THAT(none.err, HasSubstr("gone: expected a file of options, found none"));
 }
 
 }  // namespace

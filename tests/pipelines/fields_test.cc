@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "pipelines/command/cli_help.h"
+#include "pipelines/options/common_options.h"
 #include "pipelines/options/options.h"
 #include "pipelines/options/output_options.h"
 
@@ -86,17 +86,20 @@ TEST(Fields, SomeOfAListAreOneTextInItsOrder) {
   EXPECT_EQ(without, "none");
 }
 
-TEST(Fields, WhatAnOptionWasCalledLeadsToWhatReplacesIt) {
+TEST(Fields, AnUnknownOptionNamesWhatReplacesItOrWasMeant) {
   std::string without = "none";
   int size = 0;
   Fields f;
-  f.pick("without", &without, {"a"}, "Left out");
-  f.add("size", &size, "px", 0, 9, "Size").former = {"width"};
-  EXPECT_EQ(successor(f.list, "no-a"), "without a");
-  EXPECT_EQ(successor(f.list, "a"), "without a");
-  EXPECT_EQ(successor(f.list, "width"), "size");
-  EXPECT_EQ(successor(f.list, "height"), "");
-  EXPECT_EQ(successor(f.list, "size"), "");
+  f.pick("without", &without, {"conics"}, "Left out");
+  f.add("size", &size, "px", 0, 9, "Size");
+  const auto hint = [&](const std::string& given) { return unknown_option(f.list, given, "work"); };
+  EXPECT_EQ(hint("--no-conics"),
+            "unknown option --no-conics, replaced by --without conics (see "
+            "sketchsplat work --help-all)");
+  EXPECT_THAT(hint("conics"), HasSubstr(", replaced by without conics "));
+  EXPECT_THAT(hint("--sise=3"), HasSubstr("option --sise=3, did you mean --size? "));
+  EXPECT_THAT(hint("sise"), HasSubstr(", did you mean size? "));
+  EXPECT_THAT(hint("--bananas"), HasSubstr("option --bananas (see "));
 }
 
 TEST(Fields, WhatIsNoNumberIsRefused) {
@@ -132,7 +135,8 @@ TEST(Options, EveryDefaultLiesInItsRange) {
   list_fields(&method, &f);
   list_fields(&output, &f);
   for (const Field& field : f.list) {
-    const std::set<std::string> none = {"log", "config", "save-config", "like"};  // if left out
+    const std::set<std::string> none = {"log", "config", "save-config", "like",
+                                        "surfel"};  // if left out
     if (none.count(field.name)) continue;
     EXPECT_NO_THROW(assign(field, field.initial)) << field.name;
   }
@@ -165,24 +169,37 @@ TEST(Options, StepsThatAreLeftOutAreOffAndAllOthersAreAsTheyWere) {
     assign(*without, text);
     without->applied();
   };
-  leave_out("close,surfel-smoothness,surfel-planes");
+  leave_out("close,polish");
   EXPECT_FALSE(options.close.on);
-  EXPECT_EQ(options.surfels.smoothness, 0);
-  EXPECT_EQ(options.surfels.planes.fewest, 0);
+  EXPECT_FALSE(options.early_polish || options.final_polish);
   EXPECT_TRUE(options.regularize.on);
   leave_out("regularize");
   EXPECT_FALSE(options.regularize.on);
   EXPECT_TRUE(options.close.on);
-  EXPECT_EQ(options.surfels.smoothness, SurfelFieldOptions().smoothness);
-  EXPECT_EQ(options.surfels.planes.fewest, SurfelFieldOptions().planes.fewest);
+  EXPECT_TRUE(options.early_polish && options.final_polish);
 }
 
-TEST(Options, EdgesOfAllDetectorsHaveOneLeastLength) {
+TEST(Options, SurfelsAreSetByNamesOrTheirCountAlone) {
   ReconstructOptions options;
-  set_options({{"detect-min-chain", "9"}}, &options);
-  EXPECT_EQ(options.detect.min_chain, 9);
-  EXPECT_EQ(options.maps.min_chain, 9);
-  EXPECT_EQ(options.geometry.min_chain, 9);
+  set_options({{"surfel", "kernel=skew-normal,count=2000"}}, &options);
+  EXPECT_EQ(options.surfels.kernel, SurfelKernel::kSkewNormal);
+  EXPECT_EQ(options.surfels.surfels, 2000);
+  set_options({{"surfel", "500"}}, &options);
+  EXPECT_EQ(options.surfels.surfels, 500);
+  for (const char* wrong : {"kernel=round", "count=1", "size=3", "many", "kernel"})
+    EXPECT_THROW(set_options({{"surfel", wrong}}, &options), UsageError) << wrong;
+}
+
+TEST(Options, TheFolderOfSiblingsIsNotPartOfTheirNames) {
+  ReconstructOptions options;
+  set_options({{"like", "out/./a/box\nout/./b"}}, &options);
+  EXPECT_EQ(options.like, "a/box\nb");
+  EXPECT_EQ(options.like_folder, "out");
+  EXPECT_THROW(set_options({{"like", "out/./a\nb"}}, &options), UsageError);
+  ReconstructOptions plain;
+  set_options({{"like", "./a"}}, &plain);
+  EXPECT_EQ(plain.like, "./a");
+  EXPECT_EQ(plain.like_folder, "");
 }
 
 TEST(Options, BalancedIsTheDefaults) {

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <sstream>
 
 #include "tests/pipelines/program.h"
 
@@ -14,7 +13,6 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
-using testing::Contains;
 using testing::HasSubstr;
 
 class Habits : public Program {
@@ -38,9 +36,6 @@ class Habits : public Program {
     const int status = std::system(("(" + command + ") >'" + file + "' 2>&1 </dev/null").c_str());
     EXPECT_EQ(status, 0) << command << "\n" << text_of_file(file);
     return text_of_file(file);
-  }
-  static bool has(const std::string& tool) {
-    return std::system(("command -v " + tool + " >/dev/null 2>&1").c_str()) == 0;
   }
   // The program on a terminal: all that it writes there.
   std::string on_terminal(const std::string& environment, const std::string& arguments) const {
@@ -141,80 +136,6 @@ TEST_F(Habits, ColourIsForTerminalsOnly) {
   const std::string work = "detect " + scene() + " --out " + in_folder("maps");
   EXPECT_THAT(on_terminal("TERM=xterm", work), HasSubstr("] 0/12")) << "a bar";
   EXPECT_THAT(on_terminal("TERM=dumb", work), Not(HasSubstr("] 0/12")));
-}
-
-// What bash offers behind these words, the last of which is being typed.
-class Completion : public Habits {
- protected:
-  std::vector<std::string> offers(const std::string& words) const {
-    std::ofstream(folder_ / "try") << "source '" << in_folder("completion") << "'\n"
-                                   << "compopt() { :; }\nCOMP_WORDS=(" << words
-                                   << ")\nCOMP_CWORD=$((${#COMP_WORDS[@]}-1))\n_sketchsplat\n"
-                                   << "printf '%s\\n' \"${COMPREPLY[@]}\"\n";
-    std::istringstream lines(
-        shell("cd '" + part_.string() + "' && bash '" + in_folder("try") + "'"));
-    std::vector<std::string> all;
-    for (std::string line; std::getline(lines, line);)
-      if (!line.empty()) all.push_back(line);
-    return all;
-  }
-};
-
-TEST_F(Completion, OfBashKnowsVerbsOptionsChoicesAndFolders) {
-  std::ofstream(folder_ / "completion") << run("--completion bash").out;
-  EXPECT_THAT(offers("sketchsplat ''"), AllOf(Contains("reconstruct"), Contains("batch")));
-  EXPECT_THAT(offers("sketchsplat re"), testing::ElementsAre("reconstruct"));
-  EXPECT_THAT(offers("sketchsplat --th"), testing::ElementsAre("--threads"));
-  EXPECT_THAT(offers("sketchsplat batch --shar"), testing::ElementsAre("--shard"));
-  EXPECT_THAT(offers("sketchsplat reconstruct x --no-inf"), testing::ElementsAre("--no-inferred"));
-  EXPECT_THAT(offers("sketchsplat reconstruct x --without con"), testing::ElementsAre("conics"));
-  EXPECT_THAT(offers("sketchsplat reconstruct x --preset ''"),
-              testing::ElementsAre("fast", "balanced", "accurate"));
-  EXPECT_THAT(offers("sketchsplat reconstruct x --detector ma"), testing::ElementsAre("maps:"));
-  EXPECT_THAT(offers("sketchsplat reconstruct --out sc"), testing::ElementsAre("scene"));
-  EXPECT_THAT(offers("sketchsplat reconstruct x --steps ''"), testing::IsEmpty());
-  EXPECT_EQ(run("--completion csh").status, kWrongUsage);
-}
-
-TEST_F(Completion, OfZshAndFishAreScriptsThatTheseTake) {
-  std::ofstream(folder_ / "_sketchsplat") << run("--completion zsh").out;
-  std::ofstream(folder_ / "sketchsplat.fish") << run("--completion fish").out;
-  if (!has("zsh") && !has("fish")) GTEST_SKIP() << "neither zsh nor fish is here";
-  if (has("zsh")) {
-    EXPECT_EQ(shell("zsh -f -c 'autoload -U compinit && compinit -u -D && source " +
-                    in_folder("_sketchsplat") + " && whence -w _sketchsplat'"),
-              "_sketchsplat: function\n");
-  }
-  if (has("fish")) {
-    const auto offers = [&](const std::string& line) {
-      return shell("HOME=" + folder_.string() + " fish --no-config -c 'source " +
-                   in_folder("sketchsplat.fish") + "; complete -C \"" + line + "\"'");
-    };
-    EXPECT_THAT(offers("sketchsplat re"), HasSubstr("reconstruct\t"));
-    EXPECT_THAT(offers("sketchsplat reconstruct --preset "), HasSubstr("accurate"));
-    EXPECT_THAT(offers("sketchsplat batch --sh"), HasSubstr("--shard"));
-    EXPECT_THAT(offers("sketchsplat detect --sh"), Not(HasSubstr("--shard")));
-  }
-}
-
-TEST_F(Habits, TheManualHoldsEveryVerbAndOption) {
-  const std::string page = run("--man").out;
-  EXPECT_THAT(page, testing::StartsWith(".TH SKETCHSPLAT 1"));
-  const std::string options = text_of_file(fs::path(SKETCHSPLAT_SOURCE_DIR) / "OPTIONS.md");
-  const std::regex flag("\\| `(-., )?--(\\[no-\\])?([a-z0-9-]+)");
-  int flags = 0;
-  for (std::sregex_iterator it(options.begin(), options.end(), flag), end; it != end;
-       ++it, ++flags) {
-    const std::string name = std::regex_replace((*it)[3].str(), std::regex("-"), "\\-");
-    EXPECT_THAT(page, HasSubstr(name));
-  }
-  EXPECT_GT(flags, 100);
-  if (!has("man")) GTEST_SKIP() << "no man here to read it";
-  std::ofstream(folder_ / "page.1") << page;
-  EXPECT_EQ(
-      shell("LC_ALL=C.UTF-8 MANROFFSEQ='' MANWIDTH=100 man --warnings -E UTF-8 -l -Tutf8 -Z '" +
-            in_folder("page.1") + "' 2>&1 >/dev/null"),
-      "");
 }
 
 TEST_F(Habits, TheVersionNamesCommitAndLibraries) {

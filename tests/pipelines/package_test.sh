@@ -12,8 +12,6 @@ mv "$folder/first" "$folder/moved"
 prefix=$folder/moved
 for file in bin/sketchsplat lib/sketchsplat/sketchsplat_synthesis.so \
   lib/sketchsplat/sketchsplat_image_formats.so lib/sketchsplat/sketchsplat_charts.so \
-  share/man/man1/sketchsplat.1.gz share/bash-completion/completions/sketchsplat \
-  share/zsh/vendor-completions/_sketchsplat share/fish/vendor_completions.d/sketchsplat.fish \
   share/doc/sketchsplat/copyright share/doc/sketchsplat/CHANGELOG.md \
   lib/sketchsplat/sketchsplat_brep.so share/sketchsplat/slurm/submit.sh \
   share/sketchsplat/freecad/InitGui.py share/sketchsplat/freecad/sketchsplat_workbench/importer.py; do
@@ -34,5 +32,4 @@ run sketchsplat_charts.so bench "$folder/scene" --presets fast --out "$folder/be
 run "" batch "$folder/scene" --preset fast --out "$folder/batch"
 [ -s "$folder/batch/scene/sketch.step" ] || fail "no result"
 run sketchsplat_brep.so reconstruct "$folder/scene" --preset fast --out "$folder/solid"
-zcat "$prefix/share/man/man1/sketchsplat.1.gz" | grep -c '^\.TH SKETCHSPLAT 1' >/dev/null || fail "no manual page"
 echo passed
