@@ -13,12 +13,12 @@ from .part_curves import edge
 GROUP = "Sketchsplat"  # of properties in the editor
 # Group and colour (red, green, blue) by kind, as the STEP and DXF files have them.
 KINDS = {
-    "line": ("Lines", (0.15, 0.15, 0.15)),
-    "arc": ("Arcs", (0.0, 0.35, 0.85)),
-    "circle": ("Circles", (0.0, 0.6, 0.3)),
-    "ellipse": ("Ellipses", (0.6, 0.1, 0.7)),
-    "elliptic_arc": ("Ellipses", (0.85, 0.1, 0.45)),
-    "bezier": ("Splines", (0.9, 0.45, 0.0)),
+    "line": ("Lines", (0.15, 0.39, 0.92)),
+    "arc": ("Arcs", (0.92, 0.35, 0.05)),
+    "circle": ("Circles", (0.86, 0.15, 0.15)),
+    "ellipse": ("Ellipses", (0.58, 0.2, 0.92)),
+    "elliptic_arc": ("Ellipses", (0.86, 0.15, 0.6)),
+    "bezier": ("Splines", (0.09, 0.64, 0.29)),
 }
 INFERRED = ("Inferred", (0.6, 0.6, 0.6))
 LINE_WIDTH = 2.0

@@ -44,6 +44,10 @@ void write_atomically(const std::string& path, const std::function<void(std::ost
   temporary.done = true;
 }
 
+void write_text(const std::string& path, const std::string& text) {
+  write_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
 void prepare_output_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);

@@ -12,6 +12,8 @@ namespace sketchsplat {
 /// whatever `write` throws.
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write);
 
+void write_text(const std::string& path, const std::string& text);
+
 /// Makes the folder, and those above it, and tries whether files can be made in it: before hours of
 /// work, not after. Throws OutputError.
 void prepare_output_folder(const std::string& folder);

@@ -76,7 +76,7 @@ Child::Child(const std::vector<std::string>& arguments, const std::string& log, 
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("no process can be made");
   if (pid_ == 0) become(argv.data(), log.c_str(), memory_mb, parent);
-  setpgid(pid_, pid_);  // whoever of the two comes first
+  setpgid(pid_, pid_);  // by the first of the two
 }
 
 Child::~Child() {
@@ -87,7 +87,7 @@ Child::~Child() {
 
 bool Child::reap(int flags) {
   if (ended_) return true;
-  // While it is not reaped its number is nobody else's, and its group can be ended.
+  // While it is not reaped its number stays reserved, so that its group can be ended.
   siginfo_t info = {};
   while (waitid(P_PID, id_t(pid_), &info, WEXITED | WNOWAIT | flags) < 0 && errno == EINTR) {
   }

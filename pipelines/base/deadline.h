@@ -12,8 +12,8 @@ class Deadline {
   Deadline() = default;
   /// So many seconds from now.
   explicit Deadline(double seconds)
-      : at_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                               std::chrono::duration<double>(seconds))) {}
+      : at_(Clock::now() +
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))) {}
   bool passed() const { return at_ && Clock::now() >= *at_; }
 
  private:

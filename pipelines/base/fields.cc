@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "sketches/io/json.h"
 
@@ -127,18 +128,10 @@ Field& Fields::push(const std::string& name, decltype(Field::value) value,
   return list.back();
 }
 
-Field& Fields::add(const std::string& name, int* value, const std::string& unit, double low,
-                   double high, const std::string& help) {
-  Field& field = push(name, value, {}, help);
-  field.unit = unit;
-  field.low = low;
-  field.high = high;
-  return field;
-}
-
-Field& Fields::add(const std::string& name, double* value, const std::string& unit, double low,
-                   double high, const std::string& help) {
-  Field& field = push(name, value, {}, help);
+Field& Fields::add(const std::string& name, std::variant<int*, double*> value,
+                   const std::string& unit, double low, double high, const std::string& help) {
+  const auto any = std::visit([](auto* v) -> decltype(Field::value) { return v; }, value);
+  Field& field = push(name, any, {}, help);
   field.unit = unit;
   field.low = low;
   field.high = high;
@@ -169,6 +162,13 @@ Field& Fields::pick(const std::string& name, std::string* value,
   field.unit = "NAME,...";
   field.many = field.several = true;
   return field;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
 }
 
 std::string text_of(const Field& field) {

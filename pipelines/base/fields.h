@@ -54,10 +54,9 @@ class Fields {
     group_ = heading, expert_ = expert;
   }
 
-  Field& add(const std::string& name, int* value, const std::string& unit, double low, double high,
-             const std::string& help);
-  Field& add(const std::string& name, double* value, const std::string& unit, double low,
-             double high, const std::string& help);
+  /// `low` to `high`: the closed range.
+  Field& add(const std::string& name, std::variant<int*, double*> value, const std::string& unit,
+             double low, double high, const std::string& help);
   Field& add(const std::string& name, bool* value, const std::string& help);
   /// `placeholder` is what --help shows for the value: FILE, DIR.
   Field& add(const std::string& name, std::string* value, const std::string& placeholder,
@@ -83,6 +82,9 @@ class Fields {
   std::string group_ = "Options";
   bool expert_ = false;
 };
+
+/// The values of a text that may be given several times.
+std::vector<std::string> lines_of(const std::string& text);
 
 /// The value as text: what a user would type to get it.
 std::string text_of(const Field& field);

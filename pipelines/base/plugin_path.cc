@@ -24,7 +24,7 @@ std::string plugin_path(const std::string& file, const std::string& built) {
   namespace fs = std::filesystem;
   std::error_code none;
   const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
-  // Without /proc nobody knows where we are; the current folder is not to be looked into.
+  // Without /proc our place is unknown; the current folder must not be searched.
   for (const fs::path& folder : {bin, bin / ".." / "lib" / "sketchsplat"})
     if (!bin.empty() && fs::exists(folder / file, none)) return folder / file;
   const fs::path own = own_folder();

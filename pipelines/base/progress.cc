@@ -18,7 +18,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr size_t kMostRepeated = 20;  // warnings; all of them are in the report
-constexpr double kLeastSeconds = 2;   // before anybody can tell how long the rest takes
+constexpr double kLeastSeconds = 2;   // before the rest can be estimated
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -69,7 +69,7 @@ void Progress::step() {
   if (cancelled_ && omp_get_level() == 0) throw CancelledError();
   if (mode_ != Mode::kBar && !watcher_) return;
   std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock()) return;  // somebody else is drawing
+  if (!lock.owns_lock()) return;  // another thread is drawing
   const Clock::time_point now = Clock::now();
   if (now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
@@ -95,7 +95,7 @@ void Progress::warn(const std::string& text) {
   say(text, true);
 }
 
-void Progress::tell(const std::string& text) {
+void Progress::info(const std::string& text) {
   std::lock_guard<std::mutex> lock(mutex_);
   if (mode_ != Mode::kBar || verbose_)
     say(text);

@@ -12,12 +12,12 @@
 
 namespace sketchsplat {
 
-/// Whoever watches a Progress wants no more.
+/// The watcher of a Progress has cancelled the run.
 struct CancelledError : std::runtime_error {
   CancelledError() : std::runtime_error("cancelled") {}
 };
 
-/// Says on stderr how far the work is: a bar on a terminal, else one line per finished stage.
+/// Shows on stderr how far the work is: a bar on a terminal, else one line per finished stage.
 /// step() may be called from several threads.
 class Progress {
  public:
@@ -26,12 +26,12 @@ class Progress {
   explicit Progress(Mode mode, bool verbose = false) : mode_(mode), verbose_(verbose) {}
   /// Whether stderr is a terminal that can move its cursor.
   static bool stderr_is_terminal();
-  /// The same, and nobody asked for NO_COLOR (https://no-color.org).
+  /// The same, unless NO_COLOR is set (https://no-color.org).
   static bool stderr_has_color();
 
   void use_color(bool color) { color_ = color; }
-  /// Everything that is said goes to the end of this file, too, with the time of day; silent or
-  /// not. Throws OutputError.
+  /// Appends all messages to this file, too, with the time of day, even if silent. Throws
+  /// OutputError.
   void log_to(const std::string& path);
   /// A line for the log alone.
   void log(const std::string& text);
@@ -42,18 +42,18 @@ class Progress {
   using Watcher = std::function<bool(const std::string& stage, int done, int total)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
-  /// `total` is the number of step()s that will come; 0 if nobody knows.
+  /// `total` is the number of step()s that will come; 0 if unknown.
   void begin(const std::string& stage, int total);
   void step();
   /// How much of the stage's work is done, if steps take unequally long: for the time left.
   void share(double done) { share_ = done; }
-  /// Ends the stage; `result` says in a few words what came out, may be empty.
+  /// Ends the stage; `result`: what came out, in a few words; may be empty.
   void end(const std::string& result = "");
-  /// A line about something that went wrong but does not stop the run. Nothing if silent.
+  /// A line about a problem that does not stop the run. Nothing if silent.
   void warn(const std::string& text);
-  /// A line about a part of a stage, where there is no bar to show that.
-  void tell(const std::string& text);
-  /// A line for those who asked for more (--verbose).
+  /// A line about a part of a stage, unless a bar shows it.
+  void info(const std::string& text);
+  /// A line for --verbose.
   void note(const std::string& text);
   /// The warnings once more, at the end of everything, unless nothing came between.
   void repeat_warnings();
@@ -75,14 +75,14 @@ class Progress {
   Clock::time_point began_, drawn_;
   bool bar_on_screen_ = false;
   std::vector<std::string> warnings_;
-  bool said_since_ = false;  // something that is no warning
+  bool said_since_ = false;  // another line, after a warning
   std::ofstream log_;
   Watcher watcher_;
   std::atomic<bool> cancelled_{false};
   std::mutex mutex_;
 };
 
-/// "40 s", "12 min", "3 h 20 min", "2 d 4 h": coarsely, as nobody knows it better.
+/// "40 s", "12 min", "3 h 20 min", "2 d 4 h": rounded as a rough estimate.
 std::string rough_duration(double seconds);
 
 }  // namespace sketchsplat

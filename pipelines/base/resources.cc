@@ -18,14 +18,11 @@ namespace fs = std::filesystem;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr char kGroups[] = "/sys/fs/cgroup";
 
-// Our group: the line "0::/path" of the unified hierarchy, "4:memory:/path" of an old one.
-std::string own_group(const std::string& controller) {
-  const std::string mark = ":" + controller + ":/";
+// The control group of this process: the line "0::/path".
+std::string own_group() {
   std::ifstream in("/proc/self/cgroup");
-  for (std::string line; std::getline(in, line);) {
-    const size_t at = line.find(mark);
-    if (at != std::string::npos) return line.substr(at + mark.size());
-  }
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind("0::/", 0) == 0) return line.substr(4);
   return "";
 }
 
@@ -54,16 +51,14 @@ double least_of_groups(const std::string& root, const std::string& path, const s
 }
 
 int usable_cores() {
-  const double quota = least_of_groups(kGroups, own_group(""), "cpu.max");
+  const double quota = least_of_groups(kGroups, own_group(), "cpu.max");
   const double cores = omp_get_num_procs();  // obeys the affinity
   return std::max(1, int(std::min(cores, std::ceil(quota - 0.01))));
 }
 
 double usable_memory_mb() {
-  const double limit = least_of_groups(kGroups, own_group(""), "memory.max");
-  const double old = least_of_groups(std::string(kGroups) + "/memory", own_group("memory"),
-                                     "memory.limit_in_bytes");
-  return std::min({available_memory(), limit, old}) / 1e6;
+  const double limit = least_of_groups(kGroups, own_group(), "memory.max");
+  return std::min(available_memory(), limit) / 1e6;
 }
 
 }  // namespace sketchsplat

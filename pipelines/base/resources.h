@@ -9,7 +9,7 @@ namespace sketchsplat {
 /// control group. At least 1.
 int usable_cores();
 
-/// Memory that this process and its children may take without anybody swapping [MB = 1e6 bytes]:
+/// Memory that this process and its children may take without swapping [MB = 1e6 bytes]:
 /// what the machine has available, and what the limits of its control groups leave.
 double usable_memory_mb();
 

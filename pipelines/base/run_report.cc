@@ -9,7 +9,7 @@
 namespace sketchsplat {
 
 // The high-water mark of this program's memory; getrusage's counts that of the program before it in
-// the process, too, whoever started us.
+// the process, too.
 double peak_memory_mb() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -46,7 +46,7 @@ Stage::~Stage() {
       log_.report->stages.push_back({name_, seconds.count(), peak_memory_mb(), result_});
     if (log_.progress) log_.progress->end(result_);
   } catch (const std::bad_alloc&) {
-    // Nothing may leave a destructor. Whoever has run out of memory says so; this is but a story.
+    // No exception may leave a destructor; the next allocation reports the lack of memory.
   }
 }
 

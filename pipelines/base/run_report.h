@@ -51,7 +51,7 @@ struct RunLog {
 /// A stage from construction to destruction, timed into the report.
 class Stage {
  public:
-  /// `total` is the number of step()s that will come; 0 if nobody knows.
+  /// `total` is the number of step()s that will come; 0 if unknown.
   Stage(const std::string& name, const RunLog& log, int total = 0);
   ~Stage();
   Stage(const Stage&) = delete;

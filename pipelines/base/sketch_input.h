@@ -20,12 +20,12 @@ std::string solid_file(const std::string& given);
 /// Throws InputError.
 Solid read_solid(const std::string& given);
 
-/// What the files beside a sketch say of how it was made.
+/// How a sketch was made, from the files beside it.
 struct SketchOrigin {
-  double footprint = 0;  ///< world length of a pixel at the object; 0 if nobody says
+  double footprint = 0;  ///< world length of a pixel at the object; 0 if unknown
   /// Relative standard deviation of the size that the cameras leave open, where they were moved.
   double pose_scale_sigma = 0;
-  std::string scene;     ///< folder of the images; empty if nobody says or it is gone
+  std::string scene;  ///< folder of the images; empty if unknown or gone
 };
 SketchOrigin sketch_origin(const std::string& given);
 

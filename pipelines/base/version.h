@@ -9,10 +9,10 @@ namespace sketchsplat {
 std::string program_version();
 
 /// Short hash of the commit that the program was built from, with "-dirty" if files differed from
-/// it; "unknown" in other programs than sketchsplat, and if nobody knows.
+/// it; "unknown" in other programs than sketchsplat.
 std::string program_commit();
 
-/// The program says where it is from: only its main file is compiled anew with every commit.
+/// Set by the main file, which alone is compiled anew with every commit.
 void set_program_commit(const std::string& commit);
 
 /// "Ceres 2.1.0, OpenCV 4.6.0, ...": what it was built with.

@@ -174,7 +174,7 @@ class Coordinator {
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.1f s", record.seconds);
     if (record.status == 0)
-      progress_->tell("[" + std::to_string(ended_) + "/" + std::to_string(plan_.open.size()) +
+      progress_->info("[" + std::to_string(ended_) + "/" + std::to_string(plan_.open.size()) +
                       "] " + name + ": " + seconds);
     else
       progress_->warn(name + ": " + record.reason);

@@ -96,10 +96,9 @@ void make_link(const std::string& target, const std::string& link) {
 class Colmap {
  public:
   Colmap(const std::string& folder, int threads)
-      : program_(find_program("colmap")),
-        folder_(folder),
+      : folder_(folder),
         threads_(std::to_string(threads > 0 ? threads : -1)) {
-    if (program_.empty())
+    if (!has_program("colmap"))
       throw InputError("colmap",
                        "the program that finds cameras, of the package colmap (apt-get install "
                        "colmap), on the PATH",
@@ -181,13 +180,13 @@ class Colmap {
   }
 
   int run(const std::vector<std::string>& arguments, const OnLine& on_line) {
-    // Without a display, Qt must be told so.
-    return run_program(program_, arguments, {"QT_QPA_PLATFORM=offscreen"},
-                       [&](const std::string& line) {
-                         log_ << line << std::endl;
-                         if (!line.empty()) last_words_ = line;
-                         if (on_line) on_line(line);
-                       });
+    std::vector<std::string> words = {"QT_QPA_PLATFORM=offscreen", "colmap"};  // needs no display
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return run_program("env", words, [&](const std::string& line) {
+      log_ << line << std::endl;
+      if (!line.empty()) last_words_ = line;
+      if (on_line) on_line(line);
+    });
   }
 
   void must_run(const std::vector<std::string>& arguments, const OnLine& on_line = nullptr) {
@@ -199,7 +198,7 @@ class Colmap {
                          log_path() + " has all it said)");
   }
 
-  std::string program_, folder_, threads_, extraction_, matching_, last_words_;
+  std::string folder_, threads_, extraction_, matching_, last_words_;
   std::ofstream log_;
 };
 

@@ -14,7 +14,9 @@
 
 namespace sketchsplat {
 
-/// What the program answers to whoever started it.
+struct OpenOptions;
+
+/// Exit status of the program.
 enum ExitStatus {
   kDone = 0,
   kDefect = 1,
@@ -26,8 +28,7 @@ enum ExitStatus {
   kNotAllIn = 7,
 };
 
-/// The verb did its work, and what it looked at is not as it should be; one sentence. Exit
-/// status 7.
+/// An inspected part is not within its tolerances; one sentence. Exit status 7.
 struct NotAllInError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -51,6 +52,9 @@ int run_command_line(int argc, const char* const* argv, const std::vector<Verb>&
 
 /// All verbs and their options as Markdown tables: OPTIONS.md.
 std::string options_markdown(const std::vector<Verb>& verbs);
+
+/// --format and --allow-outside of the verbs that read scenes, for experts.
+void list_open_fields(OpenOptions* options, Fields* fields);
 
 // The verbs, a file each (cli_<verb>.cc).
 Verb reconstruct_verb();

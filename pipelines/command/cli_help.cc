@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "datasets/readers/open_options.h"
+#include "datasets/readers/scene.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -141,6 +144,15 @@ std::string options_markdown(const std::vector<Verb>& verbs) {
     text += "\n";
   }
   return text;
+}
+
+void list_open_fields(OpenOptions* options, Fields* f) {
+  Field& format = f->choose("format", &options->format, scene_formats(),
+                            "Format of the scene; default: by its files");
+  format.expert = true;
+  Field& outside = f->add("allow-outside", &options->allow_outside,
+                          "Also read images outside of the scene folder");
+  outside.expert = true;
 }
 
 }  // namespace sketchsplat

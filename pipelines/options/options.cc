@@ -88,8 +88,7 @@ void split_like(ReconstructOptions* o) {
   if (at == std::string::npos) return;
   o->like_folder = o->like.substr(0, at);
   std::string names;
-  std::istringstream lines(o->like);
-  for (std::string line; std::getline(lines, line);) {
+  for (const std::string& line : lines_of(o->like)) {
     if (line.rfind(o->like_folder + mark, 0) != 0)
       throw UsageError("--like: expected all of them in " + o->like_folder + mark + ", got '" +
                        line + "'");
@@ -163,10 +162,10 @@ void list_fields(DetectionOptions* o, Fields* f) {
   f->add("normals", &o->normals, "DIR",
          "Folder of the normal maps for --detector geometry, in the scene or anywhere")
       .expert = true;
-  Field& surfel = f->add(
-      "surfel", &o->surfel, "NAME=VALUE,...",
-      "Surfels of --detector 2dgs-sn: kernel=gaussian|skew-normal, density=steep|clone-split|"
-      "fixed, and how many to start with: count=N");
+  Field& surfel = f->add("surfel", &o->surfel, "NAME=VALUE,...",
+                         "Surfels of --detector 2dgs-sn: kernel=gaussian or skew-normal, "
+                         "density=steep, clone-split or "
+                         "fixed, and how many at first: count=N");
   surfel.expert = true;
   surfel.applied = [o] { set_surfels(o->surfel, &o->surfels); };
 }

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/types/errors.h"
 #include "sketches/curve/curve.h"
+#include "sketches/graph/kind_color.h"
 
 namespace sketchsplat {
+namespace fs = std::filesystem;
 namespace {
 
 constexpr int kSubPixelBits = 4;
@@ -79,24 +83,6 @@ Picture picture_of(const cv::Mat& canvas) {
 
 }  // namespace
 
-std::array<float, 3> kind_color(StrokeKind kind) {
-  switch (kind) {
-    case StrokeKind::kLine:
-      return {0.15f, 0.39f, 0.92f};
-    case StrokeKind::kArc:
-      return {0.92f, 0.35f, 0.05f};
-    case StrokeKind::kCircle:
-      return {0.86f, 0.15f, 0.15f};
-    case StrokeKind::kEllipse:
-      return {0.58f, 0.20f, 0.92f};
-    case StrokeKind::kBezier:
-      return {0.09f, 0.64f, 0.29f};
-    case StrokeKind::kEllipticArc:
-      return {0.86f, 0.15f, 0.60f};
-  }
-  return {0, 0, 0};
-}
-
 std::vector<int> spread_views(const std::vector<View>& views, const Eigen::Vector3d& target,
                               int count) {
   std::vector<int> chosen;
@@ -132,7 +118,7 @@ Picture draw_overlay(const std::vector<PaintedLine>& lines, const View& view,
   return picture_of(canvas);
 }
 
-Picture draw_overlay(const Sketch& sketch, const View& view, const Picture& picture, int longest) {
+std::vector<PaintedLine> painted_curves(const Sketch& sketch) {
   std::vector<PaintedLine> lines;
   for (int s = 0; s < sketch.size(); ++s) {
     const double length = stroke_length(sketch, s);
@@ -140,7 +126,32 @@ Picture draw_overlay(const Sketch& sketch, const View& view, const Picture& pict
     // Lines too are sampled: a part of them may lie behind the camera.
     lines.push_back({sample_stroke(sketch, s, length / 96), kind_color(sketch.strokes[s].kind)});
   }
-  return draw_overlay(lines, view, picture, longest);
+  return lines;
+}
+
+std::vector<std::string> write_overlays(const std::string& folder, const std::string& prefix,
+                                        const std::vector<PaintedLine>& lines,
+                                        const std::vector<View>& views,
+                                        const Eigen::Vector3d& target, int count,
+                                        const std::function<void(const std::string&)>& warn,
+                                        int longest) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().rfind(prefix + "_", 0) == 0 &&
+        entry.path().extension() == ".png")
+      fs::remove(entry.path(), ignored);
+  std::vector<std::string> paths;
+  for (const int v : spread_views(views, target, count)) {
+    Picture picture;
+    try {
+      picture = read_picture(views[v].image_path);
+    } catch (const InputError& e) {
+      warn(e.what());
+    }
+    paths.push_back(folder + "/" + prefix + "_" + fs::path(views[v].name).stem().string() + ".png");
+    write_png(paths.back(), draw_overlay(lines, views[v], picture, longest));
+  }
+  return paths;
 }
 
 }  // namespace sketchsplat

@@ -7,7 +7,18 @@ function add(parent, tag, text, cls) {
   if (cls) e.className = cls;
   return parent.appendChild(e);
 }
-const show = x => typeof x !== 'number' ? String(x) : Number.isInteger(x) ? String(x) : String(+x.toPrecision(4));
+const show = x => x === null || x === undefined ? '' : typeof x !== 'number' ? String(x) : Number.isInteger(x) ? String(x) : String(+x.toPrecision(4));
+// The first `texts` columns are texts, all others numbers. Returns the rows.
+function addTable(parent, head, rows, texts, onRow) {
+  const t = add(add(parent, 'div', undefined, 'scroll'), 'table'), h = add(add(t, 'thead'), 'tr'), body = add(t, 'tbody');
+  head.forEach((x, i) => add(h, 'th', x, i < texts ? 't' : ''));
+  return rows.map((row, r) => {
+    const tr = add(body, 'tr');
+    row.forEach((x, i) => add(tr, 'td', show(x), i < texts ? 't' : ''));
+    if (onRow) { tr.className = 'pick'; tr.onclick = () => onRow(r); }
+    return tr;
+  });
+}
 const rgb = c => `rgb(${c.map(x => Math.round(255 * x)).join(',')})`;
 
 // A 3D view of polylines, drawn on a plain canvas: what browsers without a graphics card have, too.
@@ -20,7 +31,6 @@ function makeViewer(canvas, items, look, picked, solid = null) {
   const START = {yaw: -0.9, pitch: 0.5, distance: 2.3, target: [0, 0, 0]};
   const FOCAL = 2.4, NEAR = 1e-3;
   let camera = structuredClone(START), marked = -1, orthographic = false, queued = false;
-  let dashed = () => false;  // (id, direction towards the viewer)
   let marks = [];            // points to show, the last two with a line between them
   const context = canvas.getContext('2d');
 
@@ -52,9 +62,8 @@ function makeViewer(canvas, items, look, picked, solid = null) {
     for (let i = 0; i + 2 < item.points.length; i += 3) out.push(eye(frame, item.points.slice(i, i + 3)));
     return out;
   }
-  function drawItem(item, id, points, frame) {
+  function drawItem(item, id, points) {
     context.lineWidth = id === marked ? 4.5 : 2;
-    context.setLineDash(dashed(id, frame[2]) ? [5, 5] : []);
     let color = null, last = null;
     for (let i = 0; i + 1 < points.length; ++i) {
       const wanted = look(item, id, i), chord = wanted && clipped(points[i], points[i + 1]);
@@ -95,11 +104,9 @@ function makeViewer(canvas, items, look, picked, solid = null) {
     const project = p => { const e = eye(frame, p); return [...place(e), e[2]]; };
     solid.render(Math.max(1, Math.round(canvas.clientWidth)), Math.max(1, Math.round(canvas.clientHeight)), project, orthographic, light);
     solid.paint(context);
-    context.setLineDash([]);
     for (const {item, id, points} of order) drawSeen(item, id, points);
   }
   function drawMarks(frame) {
-    context.setLineDash([]);
     context.strokeStyle = context.fillStyle = 'rgb(220,38,38)';
     context.lineWidth = 1.5;
     const places = marks.map(p => place(eye(frame, p)));
@@ -120,7 +127,7 @@ function makeViewer(canvas, items, look, picked, solid = null) {
       return {item, id, points, depth: points.reduce((sum, p) => sum + p[2], 0) / (points.length || 1)};
     });
     order.sort((a, b) => (a.id === marked) - (b.id === marked) || b.depth - a.depth || a.id - b.id);
-    for (const {item, id, points} of order) drawItem(item, id, points, frame);
+    for (const {item, id, points} of order) drawItem(item, id, points);
     drawSolid(frame, order);
     drawMarks(frame);
   }
@@ -216,7 +223,6 @@ function makeViewer(canvas, items, look, picked, solid = null) {
     mark(id) { marked = id; redraw(); },
     marks(points) { marks = points; redraw(); },
     orthographic(on) { orthographic = on; redraw(); },
-    dash(rule) { dashed = rule; redraw(); },
     reset() { camera = structuredClone(START); redraw(); },
     look(yaw, pitch) { Object.assign(camera, {yaw, pitch}); redraw(); },
     // Turns about this item, which fills a good part of the view.
@@ -236,4 +242,4 @@ function makeViewer(canvas, items, look, picked, solid = null) {
 }
 const viewerHelp = ok => ok ?
     'drag or arrows: turn, shift or right drag: move, wheel or + -: zoom, click: pick, double click: zoom to a curve, or reset' :
-    'This browser draws on no canvas, so there is no 3D view.';
+    'This browser has no canvas, so there is no 3D view.';

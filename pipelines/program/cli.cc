@@ -165,9 +165,7 @@ void run_verb(const Verb& verb, const Parser& parser, const CLI::App& sub, Commo
     throw UsageError(e.what() + std::string(", on the command line or in ") + common->config);
   }
   if (!common->save_config.empty())
-    write_atomically(common->save_config, [&](std::ostream& out) {
-      out << "[" << verb.name << "]\n" << sub.config_to_str();
-    });
+    write_text(common->save_config, "[" + verb.name + "]\n" + sub.config_to_str());
   if (common->threads > 0) omp_set_num_threads(common->threads);
   Progress progress(progress_mode(*common), common->verbose && !common->quiet);
   progress.use_color(Progress::stderr_has_color());

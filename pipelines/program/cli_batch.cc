@@ -20,13 +20,6 @@ struct BatchArguments {
   BatchRun run;
 };
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
 Shard shard_of(const std::string& text) {
   if (text.empty()) return {};
   Shard shard;
@@ -237,10 +230,7 @@ Verb batch_verb() {
   f.add("match", &arguments->match, "GLOB",
         "Only scenes whose name, or its last part, is like this; may be repeated")
       .several = true;
-  f.choose("format", &arguments->run.open.format, scene_formats(),
-           "What the folders are; if left out, their files decide");
-  f.add("allow-outside", &arguments->run.open.allow_outside,
-        "Read images that scene files place outside of their folders, too");
+  list_open_fields(&arguments->run.open, &f);
   list_run_fields(arguments.get(), &f);
   list_fields(&arguments->run.method, &f);
   list_fields(&arguments->run.output, &f);

@@ -16,7 +16,7 @@ void set_unless_set(const char* name, const char* value) {
 }
 
 // Some libraries ask the environment once, when they are loaded, so the program starts itself anew;
-// whoever has set one of these keeps it.
+// a value that the user has set is kept.
 // - libgomp: threads that wait for others burn their core for milliseconds by default, which beside
 //   a busy neighbour costs more than they gain.
 // - libm: exp and its kin have versions by what the CPU can do (FMA, AVX2), which differ in the

@@ -76,10 +76,6 @@ StepOptions step_of(const Inspection& inspection, const Nominal& nominal,
   return step;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  write_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
 }  // namespace
 
 void write_inspection(const std::string& folder, const Inspection& inspection,

@@ -29,7 +29,7 @@ struct Length {
 
 std::string option_text(const CadOptions& o) { return "--scale-by " + o.scale_by; }
 
-// Of strokes, what inspect would say.
+// Standard deviations of strokes, as `inspect` has them.
 class Errors {
  public:
   Errors(const Sketch& sketch, double footprint) : sketch_(sketch), footprint_(footprint) {
@@ -55,7 +55,7 @@ class Errors {
     const Evidence& e = sketch_.evidence[stroke];
     return std::hypot(sigma_.factor(s, e) * e.sigma, sigma_.place(s, e));
   }
-  // Other strokes say where one ends; if there is none, its edgels do, to a pixel.
+  // Other strokes locate an end; without one, its edgels do, to a pixel.
   double node(int node) const {
     double most = 0;
     int held = 0;

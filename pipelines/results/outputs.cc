@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -24,48 +23,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kObjDeflection = 1e-4;  // of the extent
-
-// The picture under an overlay; white if it cannot be read any more.
-Picture background(const View& view, const RunLog& log) {
-  try {
-    return read_picture(view.image_path);
-  } catch (const InputError& e) {
-    log.warn(e.what());
-    return {};
-  }
-}
-
-// Returns how many.
-int write_overlays(const std::string& folder, const Sketch& sketch, const Scene& scene, int count,
-                   const RunLog& log) {
-  int written = 0;
-  for (const int v : spread_views(scene.views, sketch_extent(sketch).center, count)) {
-    const View& view = scene.views[v];
-    const Picture overlay = draw_overlay(sketch, view, background(view, log));
-    write_png(folder + "/overlay_" + fs::path(view.name).stem().string() + ".png", overlay);
-    ++written;
-  }
-  return written;
-}
-
-// Where the views stand that the evidence counts.
-std::vector<Eigen::Vector3d> viewpoints(const Reconstruction& reconstruction, const Scene& scene) {
-  std::map<std::string, Eigen::Vector3d> center;
-  for (const View& view : scene.views) center[view.name] = view.center_in_world();
-  std::vector<Eigen::Vector3d> points;
-  for (const std::string& name : reconstruction.views) points.push_back(center[name]);
-  return points;
-}
-
-// Overlays of an earlier run show other views, perhaps; nobody should take them for today's.
-void remove_old_overlays(const std::string& folder) {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind("overlay_", 0) == 0 && entry.path().extension() == ".png")
-      fs::remove(entry.path(), ignored);
-  }
-}
 
 // Views that are called as COLMAP does: by the path below the folder that holds all images.
 std::vector<View> named_by_path(std::vector<View> views) {
@@ -162,7 +119,7 @@ void write_sketch(const std::string& folder, const Reconstruction& reconstructio
                    [&](std::ostream& out) { write_edge_points(out, sketch, spacing); });
 }
 
-// What was asked for and cannot be had is a warning: the curves are worth something without.
+// A scale that cannot be determined is a warning: the curves are useful without it.
 KnownScale scale_of(const Reconstruction& reconstruction, const CadOptions& options,
                     const RunLog& log) {
   // As its file counts curves and nodes.
@@ -212,11 +169,13 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
     solid = write_solid(folder, reconstruction.solid,
                         solid_options(reconstruction, scene, scale, output_options));
     write_cameras(folder + "/cameras", reconstruction.refined);
-    remove_old_overlays(folder);
     Scene seen = scene;
     if (!reconstruction.refined.empty()) seen.views = reconstruction.refined;
-    const int overlays = write_overlays(folder, sketch, seen, output_options.overlays, log);
-    page.viewpoints = viewpoints(reconstruction, seen);
+    const auto warning = [&](const std::string& text) { log.warn(text); };
+    const size_t overlays =
+        write_overlays(folder, "overlay", painted_curves(sketch), seen.views,
+                       sketch_extent(sketch).center, output_options.overlays, warning)
+            .size();
     if (overlays > 0) page.photos = album.photos(seen.views);
     stage.result(std::to_string(overlays) + " overlays, " + std::to_string(page.photos.size()) +
                  " photographs");

@@ -18,7 +18,7 @@ constexpr double kPointSpacing = 0.005;  ///< of the samples in edge_points.ply,
 
 /// Writes everything that `reconstruct` promises into the folder: sketch.json,
 /// parametric_edges.json, sketch.obj, cameras/ (if they were refined), sketch.step,
-/// edge_points.ply, the files of write_solid() (if the strokes tell one), overlay_<view>.png,
+/// edge_points.ply, the files of write_solid() (if a solid was found), overlay_<view>.png,
 /// report.json and report.html. The time that this takes becomes a stage of the report. sketch.obj,
 /// STEP and tables are at the scale that is returned, the others in world units. Throws
 /// OutputError; TooLittleError, when all is written, if a solid is required and there is none.
@@ -28,7 +28,7 @@ KnownScale write_outputs(const std::string& folder, Reconstruction reconstructio
                          ReconstructOptions reconstruct_options, OutputOptions output_options,
                          Progress* progress);
 
-/// What write_step is to be told for this sketch.
+/// Options of write_step for this sketch.
 StepOptions step_options(const Sketch& sketch, const std::string& name, const CadOptions& options);
 
 }  // namespace sketchsplat

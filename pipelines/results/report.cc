@@ -14,14 +14,13 @@
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_chain.h"
 #include "sketches/graph/inferred.h"
+#include "sketches/graph/kind_color.h"
 #include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
 constexpr int kBlendPoints = 32;  // along a blend, of the points that are listed
-
-// Names from files may hold bytes that are no UTF-8: shown as U+FFFD rather than refused.
 
 Json number(double value) {
   if (std::nearbyint(value) == value && std::abs(value) < 1e15) return int64_t(value);
@@ -90,7 +89,6 @@ Json curves_json(const Sketch& sketch, const Extent& extent) {
     curves.push_back(
         {{"kind", kind_name(sketch.strokes[s].kind)},
          {"nodes", {sketch.strokes[s].begin, sketch.strokes[s].end}},
-         {"views", e.views},
          {"curve", curve[s]},
          {"length", length},
          {"opacity", e.opacity},
@@ -122,14 +120,6 @@ Json photo_json(const PagePhoto& photo) {
   json["lens"] = {k.k1, k.k2, k.p1, k.p2, k.k3, k.k4, k.k5, k.k6};
   json["range"] = std::isfinite(view.lens.range()) ? Json(view.lens.range()) : Json();
   return json;
-}
-
-// Directions from the object, as the 3D view has them.
-Json viewpoints_json(const std::vector<Eigen::Vector3d>& viewpoints, const Extent& extent) {
-  Json directions = Json::array();
-  for (const Eigen::Vector3d& point : viewpoints)
-    directions.push_back(json_of((point - extent.center).normalized()));
-  return directions;
 }
 
 // Triangles of the faces of the solid, for the screen, relative to the extent.
@@ -229,7 +219,6 @@ std::string report_html(const std::string& report, const ReportPage& page) {
   data["extent"] = {
       {"center", json_of(extent.center)}, {"size", extent.size}, {"sides", json_of(extent.sides)}};
   data["curves"] = curves_json(*page.sketch, extent);
-  data["viewpoints"] = viewpoints_json(page.viewpoints, extent);
   data["faces"] = faces_json(page.solid, extent);
   data["photos"] = Json::array();
   for (const PagePhoto& photo : page.photos) data["photos"].push_back(photo_json(photo));

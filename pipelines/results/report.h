@@ -11,17 +11,17 @@
 
 namespace sketchsplat {
 
-/// Everything a report tells about a run.
+/// Everything that a report is made from.
 struct ReportInput {
   const Reconstruction* reconstruction;
   const Scene* scene;
   std::string options_json;             ///< object of option -> value (fields_json)
   bool reproducible = false;            ///< without seconds, memory and threads
-  const KnownScale* scale = nullptr;    ///< null: nobody knows
-  const SolidOutcome* solid = nullptr;  ///< null: it is not told
+  const KnownScale* scale = nullptr;    ///< null: unknown
+  const SolidOutcome* solid = nullptr;  ///< null: not reported
 };
 
-/// report.json: seconds per stage, peak memory, counts, the scale if somebody knows it, rounds,
+/// report.json: seconds per stage, peak memory, counts, the scale if it is known, rounds,
 /// warnings, options, version, commit, threads.
 std::string report_json(const ReportInput& input);
 
@@ -33,9 +33,7 @@ struct ReportImage {
 /// What report.html shows beside the report.
 struct ReportPage {
   const Sketch* sketch;
-  std::vector<PagePhoto> photos = {};  ///< under the curves
-  /// Where the views of Evidence::views stand, world; none: nobody knows what they see.
-  std::vector<Eigen::Vector3d> viewpoints = {};
+  std::vector<PagePhoto> photos = {};   ///< under the curves
   const SolidOutcome* solid = nullptr;  ///< whose faces are shown; null: none
 };
 

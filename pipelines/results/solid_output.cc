@@ -20,11 +20,7 @@ namespace {
 constexpr double kDeflection = 2e-3;  // of the extent: of meshes to look at
 constexpr const char* kFiles[] = {"/solid.step", "/solid.json", "/surfaces.csv", "/dimensions.csv"};
 
-void write_text(const std::string& path, const std::string& text) {
-  write_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
-// The check of what is written to `path`; with a clause that says why not, it is not.
+// Checks a solid and, if it is valid, writes it to `path`.
 SolidCheck checked(const Solid& solid, const std::string& path, const StepSolidOptions& options) {
   try {
     return brep_plugin().write_solid_step(solid, path, options);

@@ -36,7 +36,7 @@ struct DetectArguments {
   bool geometry = false;
 };
 
-// What a view's maps are worth.
+// Errors of a view's maps.
 struct ViewScore {
   EdgeMapScore edges;
   MapErrors maps;
@@ -69,7 +69,7 @@ EdgeMapScore score_view(const Scene& scene, const View& view, const EdgelMap& ma
   return score_edge_points(points, read_edge_polylines(path), kTolerance);
 }
 
-// Depth and normals, where the detector has its own: to files, and against the true ones.
+// Depth and normals, if the detector has its own: to files, and against the true ones.
 void look_at_geometry(const Scene& scene, const Detector& detector, const View& view,
                       const DetectArguments& arguments, ViewScore* score) {
   const bool compare = arguments.score && detector.learns() &&
@@ -82,7 +82,7 @@ void look_at_geometry(const Scene& scene, const Detector& detector, const View& 
   score->has_maps = true;
 }
 
-// Maps, and what they are worth if that is asked for, view by view.
+// Writes the maps view by view, and scores them if asked to.
 std::vector<ViewScore> write_maps(const Scene& scene, const Detector& detector,
                                   const std::vector<Detection>& found,
                                   const DetectArguments& arguments) {
@@ -97,7 +97,7 @@ std::vector<ViewScore> write_maps(const Scene& scene, const Detector& detector,
   return scores;
 }
 
-// Of the views that have them; `maps` says how many these are.
+// Mean over the views that have maps; `maps`: their number.
 MapErrors mean_map_errors(const std::vector<ViewScore>& scores, int* maps) {
   MapErrors sum;
   *maps = 0;
@@ -112,8 +112,8 @@ MapErrors mean_map_errors(const std::vector<ViewScore>& scores, int* maps) {
   return sum;
 }
 
-// What --score tells.
-void tell_scores(const EdgeMapScore& mean, int maps, const std::vector<ViewScore>& scores) {
+// What --score prints.
+void print_scores(const EdgeMapScore& mean, int maps, const std::vector<ViewScore>& scores) {
   char line[160];
   std::snprintf(
       line, sizeof line,
@@ -146,9 +146,9 @@ Json json_of_scores(const EdgeMapScore& mean, const std::vector<ViewScore>& scor
   return json;
 }
 
-// What was written, and what it is worth.
-void tell(const std::vector<Detection>& found, const std::vector<ViewScore>& scores,
-          const DetectArguments& arguments, bool json) {
+// Prints what was written, and its scores.
+void print_result(const std::vector<Detection>& found, const std::vector<ViewScore>& scores,
+                  const DetectArguments& arguments, bool json) {
   int maps = 0;
   EdgeMapScore mean;
   for (size_t i = 0; i < found.size(); ++i) {
@@ -166,7 +166,7 @@ void tell(const std::vector<Detection>& found, const std::vector<ViewScore>& sco
     return;
   }
   std::cout << map_folder(arguments) << ": " << maps << " edge maps\n";
-  if (arguments.score) tell_scores(mean, maps, scores);
+  if (arguments.score) print_scores(mean, maps, scores);
 }
 
 void run_detect(DetectArguments arguments, const CommonOptions& common, Progress* progress) {
@@ -182,7 +182,7 @@ void run_detect(DetectArguments arguments, const CommonOptions& common, Progress
   const std::string surfels = detector->surfels();
   if (arguments.geometry && !surfels.empty())
     write_atomically(arguments.out + "/surfels.ply", [&](std::ostream& file) { file << surfels; });
-  tell(found, scores, arguments, common.json);
+  print_result(found, scores, arguments, common.json);
 }
 
 }  // namespace
@@ -197,17 +197,15 @@ Verb detect_verb() {
       f.add("out", &arguments->out, "DIR", "Maps go to DIR/edge_<detector>/, named as images");
   out.required = true;
   out.short_name = "o";
-  f.choose("format", &arguments->open.format, scene_formats(),
-           "What the folder is; if left out, its files decide");
-  f.add("allow-outside", &arguments->open.allow_outside,
-        "Read images that the scene file places outside of its folder, too");
-  f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
+  list_open_fields(&arguments->open, &f);
+  f.add("masks", &arguments->masks, "DIR",
+        "Folder of masks, white on the object; preferred to those of the scene");
   list_fields(&arguments->detection, &f);
   f.group("Maps");
-  f.add("ridge", &arguments->ridge_px, "px", 0.3, 10, "Width (one sigma) in which edges are drawn");
+  f.add("ridge", &arguments->ridge_px, "px", 0.3, 10, "Width (one sigma) of the drawn edges");
   f.add("score", &arguments->score, "Compare with the true edges in edges_visible/ of the scene");
   f.add("geometry", &arguments->geometry,
-        "Write depth/, normal/, alpha/ and surfels.ply, too, if the detector has them");
+        "Also write depth/, normal/, alpha/ and surfels.ply, if the detector has them");
   Verb verb;
   verb.name = "detect";
   verb.summary = "Write the edge map of every image";

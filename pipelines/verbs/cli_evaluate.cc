@@ -28,20 +28,7 @@ struct EvaluateArguments {
 
 bool on_stdout(const EvaluateArguments& arguments) { return arguments.json == "-"; }
 
-void write_text(const std::string& path, const std::string& text) {
-  write_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
-Picture picture_or_white(const View& view, Progress* progress) {
-  try {
-    return read_picture(view);
-  } catch (const InputError& e) {
-    progress->warn(e.what());
-    return {};
-  }
-}
-
-// Missed edges in red, strokes that are no edges in blue. Polylines are cut finely: a part of them
+// Missed edges in red, wrong strokes in blue. Polylines are cut finely: a part of them
 // may lie behind the camera.
 void write_worst(const Evaluation& evaluation, const std::string& folder, const std::string& out,
                  int count, Progress* progress) {
@@ -58,12 +45,8 @@ void write_worst(const Evaluation& evaluation, const std::string& folder, const 
   add(evaluation.worst_edges, {0.86f, 0.15f, 0.15f});
   if (lines.empty()) return;
   target /= double(lines.size());
-  const Scene scene = open_scene(folder);
-  for (const int v : spread_views(scene.views, target, count)) {
-    const View& view = scene.views[v];
-    const std::string name = "worst_" + fs::path(view.name).stem().string() + ".png";
-    write_png(out + "/" + name, draw_overlay(lines, view, picture_or_white(view, progress)));
-  }
+  write_overlays(out, "worst", lines, open_scene(folder).views, target, count,
+                 [&](const std::string& text) { progress->warn(text); });
 }
 
 void check_usage(const EvaluateArguments& arguments) {
@@ -167,27 +150,27 @@ Verb evaluate_verb() {
   Fields f;
   f.group("Arguments");
   f.add("pred", &arguments->prediction, "DIR|FILE",
-        "A result folder, or a .json, .obj or .ply; or a folder of these, called like the scenes")
+        "A result folder, or a .json, .obj or .ply; or a folder of these with the scenes' names")
       .required = true;
   f.add("gt", &arguments->truth, "SCENE|FILE|DIR",
         "A scene with ground truth, or the truth itself; or a folder of scenes")
       .required = true;
   f.choose("protocol", &arguments->options.protocol, {"sketchsplat", "emap", "curvegaussian"},
-           "Whose way of sampling predictions");
+           "How predictions are sampled");
   f.add("solid", &arguments->solid, "FILE",
         "A STEP file to compare with the scene's part, instead of solid.step of the result");
   f.choose("missing", &arguments->missing, {"zero", "skip"},
-           "What a scene without a result counts, of several");
+           "Of several scenes, one without a result counts as zero or is skipped");
   f.add("json", &arguments->json, "FILE",
-        "Write all numbers to this file, too; without FILE to standard output, nothing else")
+        "Write all numbers as JSON to this file; without FILE, only that to standard output")
       .value_optional = true;
   f.add("out", &arguments->out, "DIR",
         "Write evaluation.json, evaluation.csv, strokes.csv and overlays there");
   f.add("overlays", &arguments->overlays, "images", 0, 100,
-        "Draw missed edges (red) and wrong strokes (blue) over so many images");
+        "Draw missed edges (red) and wrong curves (blue) over this many images");
   Verb verb;
   verb.name = "evaluate";
-  verb.summary = "Compare edges with the ground truth";
+  verb.summary = "Compare curves with the ground truth";
   verb.examples = {"sketchsplat evaluate --pred out/part --gt scenes/part",
                    "sketchsplat evaluate --pred out --gt scenes --out numbers --overlays 3",
                    "sketchsplat evaluate --pred out/part/sketch.obj --gt scenes/part "

@@ -50,7 +50,7 @@ std::string format_of(const std::string& path) {
   return "";
 }
 
-// What sketch.json holds beside the sketch: the options, the names of the views.
+// Members of sketch.json beside the sketch: the options, the names of the views.
 std::string other_members(const std::string& path, const KnownScale& scale) {
   std::ifstream in(path);
   Json j = parse_json<Json>(in, path);
@@ -78,7 +78,7 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
   } else if (format == "obj") {
     write_obj(out, sketch, arguments.deflection, cad.scale);
   } else if (format == "glb") {
-    write_glb(out, sketch, {name, cad.scale * millimetres(cad.unit) / 1000, kind_color});
+    write_glb(out, sketch, {name, cad.scale * millimetres(cad.unit) / 1000});
   } else if (format == "ply") {
     const double size = sketch_extent(sketch).size;
     write_edge_points(out, sketch, arguments.spacing * (size > 0 ? size : 1));
@@ -89,7 +89,7 @@ void write(std::ostream& out, const Sketch& sketch, const ExportArguments& argum
   }
 }
 
-// Options that the format cannot obey.
+// Refuses options that do not apply to the format.
 void check(const ExportArguments& arguments, const std::string& format) {
   const bool cad = format == "step" || format == "dxf" || format == "obj" || format == "glb";
   check_scale(arguments.cad);
@@ -110,11 +110,11 @@ Sketch confident(const Sketch& sketch, double least, const std::string& path, Pr
   const bool known = std::any_of(sketch.evidence.begin(), sketch.evidence.end(),
                                  [](const Evidence& e) { return !std::isnan(e.confidence); });
   if (!known && sketch.size() > 0)
-    progress->warn(path + " knows no confidence: --min-confidence leaves nothing out");
+    progress->warn(path + " has no confidences: --min-confidence leaves nothing out");
   return keep_confident(sketch, least);
 }
 
-// The solid that reconstruct found, as it was chosen then: there are no images to choose by.
+// The solid that reconstruct chose; without images none can be searched for.
 void export_solid(const ExportArguments& arguments, bool json) {
   const Solid solid = read_solid(arguments.sketch);
   const CadOptions& options = arguments.cad;
@@ -139,7 +139,8 @@ void run_export(const ExportArguments& arguments, bool json, Progress* progress)
   }
   const std::string format = arguments.format.empty() ? format_of(arguments.out) : arguments.format;
   if (format.empty())
-    throw UsageError("--format is needed: the name " + arguments.out + " does not tell it");
+    throw UsageError("--format: expected one of step, dxf, obj, glb, ply, parametric, sketch, as " +
+                     arguments.out + " has none of their endings");
   check(arguments, format);
   const Sketch all = read_sketch(arguments.sketch);
   const Sketch sketch = confident(all, arguments.min_confidence, arguments.sketch, progress);
@@ -170,12 +171,11 @@ Verb export_verb() {
   out.unless = "solid";
   out.short_name = "o";
   f.add("solid", &arguments->solid, "FILE.step",
-        "Write the solid that reconstruct found, from solid.json beside the sketch; nothing is "
-        "searched for anew");
-  f.choose("format", &arguments->format, kFormats, "If left out, the ending of FILE decides");
+        "Write the solid of a reconstruction, from solid.json beside the sketch");
+  f.choose("format", &arguments->format, kFormats, "Format of FILE; default: by its ending");
   f.group("Output");
   f.add("min-confidence", &arguments->min_confidence, "", 0, 1,
-        "Less probable strokes are left out, unless nobody knows");
+        "Leave out curves that are less probable than this");
   f.add("deflection", &arguments->deflection, "of the extent", 1e-7, 0.1,
         "Largest distance of a chord to its curve in OBJ");
   f.add("spacing", &arguments->spacing, "of the extent", 1e-5, 1, "Distance of the samples in PLY");

@@ -8,7 +8,6 @@
 #include <iterator>
 #include <memory>
 #include <set>
-#include <sstream>
 
 #include "datasets/readers/scene.h"
 #include "datasets/types/errors.h"
@@ -44,13 +43,6 @@ struct InspectArguments {
   InspectOptions inspect;
 };
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
 // The nominal part, and, if it came with faces, who can see its edges.
 struct NominalFile {
   Nominal nominal;
@@ -70,7 +62,7 @@ NominalFile read_nominal(const InspectArguments& a) {
   return {make_nominal(moved(cad->edges.sketch, {1 / millimetres(a.unit)}), a.nominal), cad};
 }
 
-// The scene that a result was made of; without views if nobody knows or it cannot be read.
+// The scene that a result was made of; without views if it is unknown or cannot be read.
 Scene scene_of(const std::string& given, const SketchOrigin& origin, Progress* progress) {
   const std::string folder = given.empty() ? origin.scene : given;
   if (folder.empty()) return {};
@@ -137,7 +129,6 @@ std::vector<ReportImage> draw_worst(const std::string& folder, const Inspection&
                                     const Nominal& nominal, const Scene& scene, double scale,
                                     int count, Progress* progress) {
   const std::vector<int> worst = worst_edges(inspection, 3);
-  if (worst.empty() || scene.views.empty()) return {};
   const Similarity to_world = (inspection.alignment.pose * Similarity{scale}).inverse();
   std::vector<PaintedLine> lines;
   const auto add = [&](const Sketch& sketch, int s, std::array<float, 3> colour, int width) {
@@ -152,29 +143,11 @@ std::vector<ReportImage> draw_worst(const std::string& folder, const Inspection&
     for (const int s : nominal.edges[e].strokes) add(nominal.sketch, s, {0.86f, 0.15f, 0.15f}, 2);
   const Eigen::Vector3d target = lines.back().points.rowwise().mean();
   std::vector<ReportImage> images;
-  for (const int v : spread_views(scene.views, target, count)) {
-    const View& view = scene.views[v];
-    Picture picture;
-    try {
-      picture = read_picture(view);
-    } catch (const InputError& e) {
-      progress->warn(e.what());
-    }
-    const std::string path = folder + "/inspection_" + fs::path(view.name).stem().string() + ".png";
-    write_png(path, draw_overlay(lines, view, picture, 800));
-    images.push_back({view.name, bytes_of(path)});
-  }
+  const auto warn = [&](const std::string& text) { progress->warn(text); };
+  for (const std::string& path : write_overlays(folder, "inspection", lines, scene.views, target,
+                                                worst.empty() ? 0 : count, warn, 800))
+    images.push_back({fs::path(path).filename().string(), bytes_of(path)});
   return images;
-}
-
-// Of an earlier run, which perhaps drew other views.
-void remove_old_overlays(const std::string& folder) {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind("inspection_", 0) == 0 && entry.path().extension() == ".png")
-      fs::remove(entry.path(), ignored);
-  }
 }
 
 std::string name_of(const std::string& result) {
@@ -205,7 +178,6 @@ Inspection inspect_one(const std::string& result, const NominalFile& file,
                                         visibility_of(file, scene, scale, millimetres(a.unit)));
   const std::string folder = folder_of(result, a, alone);
   prepare_output_folder(folder);
-  remove_old_overlays(folder);
   *title = {result, a.nominal, length_unit_names()[int(a.unit)], a.scale, program_version()};
   write_inspection(
       folder, inspection, file.nominal, options, *title,
@@ -302,46 +274,46 @@ Fields list_inspect_fields(InspectArguments* a) {
   Fields f;
   f.group("Arguments");
   Field& results = f.add("results", &a->results, "RESULT",
-                         "A folder that reconstruct wrote, or its sketch.json; several: a lot");
+                         "A result folder of reconstruct, or its sketch.json; several: a lot");
   results.required = results.positional = results.several = true;
-  f.add("nominal", &a->nominal, "PART.step|SKETCH.json", "The part as it should be").required =
-      true;
-  f.add("out", &a->out, "DIR", "Where to write; if left out, beside the result").short_name = "o";
+  f.add("nominal", &a->nominal, "PART.step|SKETCH.json", "The nominal part").required = true;
+  f.add("out", &a->out, "DIR", "Folder to write into; default: that of the result").short_name =
+      "o";
   f.add("scene", &a->scene, "SCENE",
-        "The images, to tell what they cannot show; if left out, those of the result");
+        "The images, which determine what is visible; default: those of the result");
   f.group("Tolerance and size");
   f.add("tolerance", &a->inspect.tolerance, "units", 0, HUGE_VAL,
-        "Radius of the tube around every edge, and +- of lengths");
+        "Radius of the tube around every edge, and +- of dimensions");
   f.choose("iso2768", &a->inspect.iso, {"none", "f", "m", "c", "v"},
-           "Tolerances of dimensions by their size; of edges by the part's, without --tolerance");
-  f.choose("unit", &a->unit, length_unit_names(), "Of all lengths");
+           "General tolerances: of dimensions by their size; of edges, without --tolerance, by the "
+           "part's");
+  f.choose("unit", &a->unit, length_unit_names(), "Unit of all lengths");
   f.add("scale", &a->scale, "units per world unit", 0, 1e12,
-        "Of the result; 0 fits it: then shapes are judged, sizes not");
+        "Scale of the result; 0: fitted, then only shapes are judged");
   f.add("nominal-scale", &a->nominal_scale, "units per unit of SKETCH.json", 1e-12, 1e12,
-        "Of the nominal part, unless it is STEP");
+        "Scale of the nominal part, unless it is STEP");
   f.group("Alignment");
   f.choose("align", &a->inspect.align.to, {"fit", "as-given"},
-           "The best fit of all edges, or the frames of the files");
+           "Align by the best fit of all edges, or not at all");
   f.add("datum", &a->datums, "NAME",
-        "An edge (E1) or plane (P1) that the part is aligned by; may be repeated, the first counts "
-        "most")
+        "An edge (E1) or plane (P1) to align by; may be repeated, in the order of precedence")
       .several = true;
   f.add("reach", &a->reach_percent, "% of the part", 0.01, 50,
-        "Farther away nothing is the same edge; at least three tolerances");
+        "Largest distance of a curve to its nominal edge; at least three tolerances");
   f.add("least-views", &a->inspect.associate.least_views, "views", 1, 10000,
-        "That can see what must be found");
+        "An edge is missing if so many views could see it");
   f.add("smooth-angle", &a->smooth_angle_deg, "deg", 0.01, 89,
-        "Faces of the STEP file that meet at less have no edge");
+        "Faces of the STEP file that meet at a smaller angle have no edge");
   f.group("Errors");
   f.add("scale-sigma", &a->inspect.sigma.scale_percent, "%", 0, 100,
-        "Standard deviation of the scale; if left out, what cameras that were moved leave open")
+        "Standard deviation of the scale; default: by the refined cameras")
       .applied = [a] { a->scale_sigma_given = true; };
   f.choose("prior", &a->prior, {"part", "none"},
-           "Deviations to expect: as those of all edges of the part, or of any scale");
+           "Prior of deviations: from all edges of the part, or none");
   f.add("calibration", &a->calibration, "FILE.json",
-        "Other numbers for sigma_model of inspection.json, from eval/calibrate_inspection.py");
+        "Numbers of the error model, as eval/calibrate_inspection.py writes them");
   f.group("Output");
-  f.add("overlays", &a->overlays, "images", 0, 100, "That the worst edges are drawn over");
+  f.add("overlays", &a->overlays, "images", 0, 100, "Draw the worst edges over this many images");
   f.add("pieces", &a->pieces, "Write inspection_pieces.json, for eval/calibrate_inspection.py");
   return f;
 }
@@ -352,7 +324,7 @@ Verb inspect_verb() {
   const auto arguments = std::make_shared<InspectArguments>();
   Verb verb;
   verb.name = "inspect";
-  verb.summary = "How far is it from nominal, with what probability";
+  verb.summary = "Compare a result with its nominal part, with probabilities";
   verb.examples = {
       "sketchsplat inspect out/part --nominal part.step --tolerance 0.1 --unit mm --scale 80",
       "sketchsplat inspect out/part --nominal part.step --iso2768 m --scale 80 --datum P1 --datum "

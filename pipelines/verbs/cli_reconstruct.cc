@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -37,7 +36,7 @@ struct ReconstructArguments {
   OutputOptions output;
 };
 
-// How many views the detector finds no map for.
+// Number of views without an edge map.
 int missing_maps(const Scene& scene, const std::string& detector) {
   const std::string prefix = "maps:";
   if (detector.rfind(prefix, 0) != 0) return 0;
@@ -46,7 +45,7 @@ int missing_maps(const Scene& scene, const std::string& detector) {
   }));
 }
 
-// Photographs of which only the size is known, as a scene without cameras.
+// Photographs as a scene without cameras: only their sizes are known.
 Scene photographs_in(const std::string& folder) {
   Scene scene;
   scene.folder = folder;
@@ -67,7 +66,7 @@ Scene photographs_in(const std::string& folder) {
   return scene;
 }
 
-void tell_scale(const KnownScale& scale) {
+void print_scale(const KnownScale& scale) {
   if (scale.source.empty()) return;
   std::cout << scale.source << ": a world unit is " << scale.units_per_world << " "
             << length_unit_names()[int(scale.unit)];
@@ -76,9 +75,9 @@ void tell_scale(const KnownScale& scale) {
   std::cout << "\n";
 }
 
-// What would be read, how long it takes, and how much memory.
-void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool json,
-               Progress* progress) {
+// Prints what would be read, and the expected time and memory.
+void print_plan(const Scene& scene, const ReconstructArguments& arguments, bool json,
+                Progress* progress) {
   double pixels = 0;
   for (const View& view : scene.views) pixels += double(view.camera.width) * view.camera.height;
   const bool photographs = !arguments.images.empty();
@@ -110,25 +109,24 @@ void tell_plan(const Scene& scene, const ReconstructArguments& arguments, bool j
             << (threads == 1 ? " thread" : " threads")
             << (photographs ? " after COLMAP, which takes far longer, " : ", ")
             << std::lround(load.memory_mb) << " MB, into " << arguments.out << "\n";
-  tell_scale(scale);
+  print_scale(scale);
 }
 
-void tell_result(const Sketch& sketch, const KnownScale& scale,
-                 const ReconstructArguments& arguments, bool json) {
+void print_result(const Sketch& sketch, const KnownScale& scale,
+                  const ReconstructArguments& arguments, bool json) {
   if (json) {
-    std::ifstream in(arguments.out + "/report.json");
     Json result = {{"out", arguments.out}};
-    result.update(parse_json<Json>(in));
+    result.update(json_of_file(arguments.out + "/report.json"));
     print_json(result);
     return;
   }
   std::cout << arguments.out << "/sketch.step: " << sketch.size() << " curves, "
             << sketch.nodes.cols() << " junctions\n"
             << arguments.out << "/report.html: to look at\n";
-  tell_scale(scale);
+  print_scale(scale);
 }
 
-// The scene, or the photographs with the cameras that COLMAP finds.
+// The scene, or photographs with cameras from COLMAP.
 Scene open_views(const ReconstructArguments& arguments, const CommonOptions& common,
                  const RunLog& log) {
   Scene scene;
@@ -138,11 +136,11 @@ Scene open_views(const ReconstructArguments& arguments, const CommonOptions& com
     prepare_output_folder(arguments.out);
     std::error_code none;
     if (std::filesystem::equivalent(arguments.images, arguments.out, none))
-      throw UsageError("--out must be another folder than --images: it gets pictures, too");
+      throw UsageError("--out must be another folder than --images: images are written there");
     const std::string folder = arguments.out + "/colmap";
     find_cameras(arguments.images, {arguments.out, arguments.masks}, folder, common.threads, log);
     scene = open_scene(folder, "colmap");
-    scene.folder = arguments.images;  // that is how users and files call it
+    scene.folder = arguments.images;  // as users and files call it
   }
   if (!arguments.masks.empty()) use_masks(arguments.masks, &scene);
   for (const std::string& warning : scene.warnings) log.progress->warn(warning);
@@ -157,9 +155,9 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   if (!arguments.scene.empty() && !arguments.images.empty())
     throw UsageError("reconstruct takes SCENE or --images DIR, not both");
   if (arguments.dry_run) {
-    tell_plan(arguments.images.empty() ? open_views(arguments, common, {nullptr, progress})
-                                       : photographs_in(arguments.images),
-              arguments, common.json, progress);
+    print_plan(arguments.images.empty() ? open_views(arguments, common, {nullptr, progress})
+                                        : photographs_in(arguments.images),
+               arguments, common.json, progress);
     return;
   }
   RunReport before;
@@ -174,7 +172,7 @@ void run_reconstruct(ReconstructArguments arguments, const CommonOptions& common
   report.warnings.insert(report.warnings.begin(), before.warnings.begin(), before.warnings.end());
   const KnownScale scale = write_outputs(arguments.out, result, scene, album, arguments.method,
                                          arguments.output, progress);
-  tell_result(result.sketch, scale, arguments, common.json);
+  print_result(result.sketch, scale, arguments, common.json);
 }
 
 }  // namespace
@@ -186,25 +184,21 @@ Verb reconstruct_verb() {
   Field& scene = f.add("scene", &arguments->scene, "SCENE", "The folder with calibrated images");
   scene.required = scene.positional = true;
   scene.unless = "images";
-  Field& out = f.add("out", &arguments->out, "DIR", "The folder to write into, made if missing");
+  Field& out = f.add("out", &arguments->out, "DIR", "The folder to write into");
   out.required = true;
   out.short_name = "o";
-  f.choose("format", &arguments->open.format, scene_formats(),
-           "The folder is read as this; if it is left out, its files decide")
-      .expert = true;
-  f.add("allow-outside", &arguments->open.allow_outside,
-        "Read images that the scene file places outside of its folder, too")
-      .expert = true;
+  list_open_fields(&arguments->open, &f);
   f.add("dry-run", &arguments->dry_run,
-        "Say what would be read, and what it takes");
+        "Only print what would be read, and the expected time and memory");
   f.add("images", &arguments->images, "DIR",
-        "Photographs without cameras: COLMAP finds them first");
-  f.add("masks", &arguments->masks, "DIR", "Masks, white on the object, before those of the scene");
+        "Photographs without cameras, which COLMAP finds first");
+  f.add("masks", &arguments->masks, "DIR",
+        "Folder of masks, white on the object; preferred to those of the scene");
   list_fields(&arguments->method, &f);
   list_fields(&arguments->output, &f);
   Verb verb;
   verb.name = "reconstruct";
-  verb.summary = "Turn calibrated images of an object into its edges as curves";
+  verb.summary = "Reconstruct the edges of an object as curves from calibrated images";
   verb.examples = {"sketchsplat reconstruct scenes/part --out out/part",
                    "sketchsplat reconstruct --images photos -o out/part --masks masks",
                    "sketchsplat reconstruct scenes/part -o out/part --scale-by tag=10mm"};

@@ -2,7 +2,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "datasets/synthetic/catalogue/outputs.h"
 #include "datasets/synthetic/catalogue/part_table.h"
@@ -26,8 +25,7 @@ struct SynthesizeArguments {
 // The user's NAME=VALUE lines for this part.
 PartValues part_values(const std::string& part, const std::string& lines) {
   PartValues values;
-  std::istringstream in(lines);
-  for (std::string line; std::getline(in, line);) {
+  for (const std::string& line : lines_of(lines)) {
     const size_t equals = line.find('=');
     Field value;
     double number = 0;
@@ -102,19 +100,18 @@ void list_camera_fields(SynthesizeOptions* o, Fields* f) {
   f->group("Cameras");
   f->choose("rig", &o->rig.kind,
             {"sphere", "upper", "ring", "random", "one-sided", "hemisphere", "auto"},
-            "Where the cameras stand; auto: on a hemisphere with --style photo, else a sphere");
-  f->add("views", &o->rig.views, "cameras", 1, 100000, "Number of pictures");
-  f->add("resolution", &o->rig.resolution, "px", 16, 8192, "Width of the pictures");
+            "Arrangement of the cameras; auto: hemisphere with --style photo, else sphere");
+  f->add("views", &o->rig.views, "cameras", 1, 100000, "Number of images");
+  f->add("resolution", &o->rig.resolution, "px", 16, 8192, "Width of the images");
   f->add("height", &o->rig.height, "px", 0, 8192,
-         "Height of the pictures; 0 is the width, with --style photo three quarters of it");
+         "Height of the images; 0: the width, with --style photo three quarters of it");
   f->add("focal", &o->rig.focal, "px", 0, 1e6,
-         "Focal length; 0 is that of ABC-NEF, with --style photo 1.15 widths");
+         "Focal length; 0: that of ABC-NEF, with --style photo 1.15 widths");
   f->add("object-size", &o->rig.object_size, "image widths", 0, 10,
-         "Of the longest side at --distance, instead of --focal; 0 leaves it to that");
+         "Size of the object in the images, instead of --focal; 0: by the focal length");
   f->add("distance", &o->rig.distance, "extents", 0, 1000,
-         "Of the cameras from the origin, of a hemisphere from the object; 0 is 4, with --style "
-         "photo 2.6");
-  f->add("elevation", &o->rig.elevation_deg, "deg", -85, 85, "Of the cameras of a ring");
+         "Distance of the cameras from the object; 0: 4, with --style photo 2.6");
+  f->add("elevation", &o->rig.elevation_deg, "deg", -85, 85, "Elevation of the cameras of a ring");
   f->add("spread", &o->rig.spread_deg, "deg", 1, 180, "Half-angle of the cone of a one-sided rig");
 }
 
@@ -123,65 +120,64 @@ void list_picture_fields(SynthesizeOptions* o, Fields* f) {
   f->group("Pictures");
   f->choose("style", &r.style,
             {"plain", "textured", "speckled", "dark", "glossy", "shadowed", "photo"},
-            "Surface and light of the object; photo: JPEG photographs of it on a table in a room");
+            "Surface and light of the object; photo: JPEG photographs on a table in a room");
   f->add("texture-strength", &r.texture_strength, "", 0, 1,
-         "Contrast of what textured and speckled print");
+         "Contrast of textured and speckled surfaces");
   f->add("even-light", &r.even_light, "share", 0, 1,
-         "Of the light comes evenly from all sides, as in a light tent: faces get one shade");
+         "Share of the light that comes evenly from all sides, as in a light tent");
   f->add("noise", &r.noise, "grey levels", 0, 100, "Standard deviation of the noise");
   f->add("blur", &r.blur, "px", 0, 20, "Standard deviation of the blur");
   f->add("exposure", &r.exposure, "stops", 0, 2, "Standard deviation of the exposure");
   f->add("jpeg", &r.jpeg, "quality", 0, 100,
-         "Compress and decode the pictures before they are written; 0 does not; of photographs the "
-         "quality of their files, 0 is 92");
-  f->add("clutter", &r.clutter, "Put a room full of things behind the object; no alpha then");
-  f->add("transparent", &r.transparent, "Leave the background out (alpha)");
-  f->add("background", &r.background, "", 0, 1, "Grey of the background if it is not left out");
+         "Compress the images once before they are written; 0: not; with --style photo the quality "
+         "of the files, 0: 92");
+  f->add("clutter", &r.clutter, "Put a cluttered room behind the object; then without alpha");
+  f->add("transparent", &r.transparent, "Make the background transparent (alpha)");
+  f->add("background", &r.background, "", 0, 1, "Grey of the background if it is not transparent");
   f->add("outputs", &o->outputs, "NAMES",
-         "Beside the pictures: all, none or some of mask,depth,normal,edges; not with --style "
-         "photo");
+         "More files: all, none or some of mask,depth,normal,edges; not with --style photo");
   f->group("Damage");
   DegradeOptions& d = o->degrade;
   f->add("pose-noise", &d.pose_noise_px, "px", 0, 100,
-         "Mean shift of the object's points by errors of the poses as stated");
-  f->add("focal-error", &d.focal_error_percent, "%", -50, 50,
-         "How much the focal length as stated is too large");
-  f->add("missing", &d.missing, "share", 0, 1, "Of the frames have no image file");
-  f->add("truncated", &d.truncated, "share", 0, 1, "Of the frames have half an image file");
+         "Mean shift of the object's points by errors of the stated poses");
+  f->add("focal-error", &d.focal_error_percent, "%", -50, 50, "Error of the stated focal length");
+  f->add("missing", &d.missing, "share", 0, 1, "Share of the frames without an image file");
+  f->add("truncated", &d.truncated, "share", 0, 1, "Share of the frames with half an image file");
 }
 
 void list_photo_fields(SynthesizeOptions* o, Fields* f) {
   f->group("Photographs (--style photo)");
   PhotoOptions& p = o->photo;
   f->choose("surface", &p.surface, {"painted", "metal", "printed", "speckled"},
-            "What the part is made of; printed: in layers");
-  f->choose("up", &p.up, {"z", "-z", "y", "-y", "x", "-x"}, "Which axis of the part looks up");
-  f->add("distortion", &p.distortion, "", 0, 3, "Strength of the lens; 0 is a pinhole, 1 usual");
-  f->add("state-lens", &p.state_lens, "Write the lens into the model, not a pinhole in its place");
+            "Material of the part; printed: in layers");
+  f->choose("up", &p.up, {"z", "-z", "y", "-y", "x", "-x"}, "Axis of the part that points up");
+  f->add("distortion", &p.distortion, "", 0, 3,
+         "Strength of the lens distortion; 0: pinhole, 1: usual");
+  f->add("state-lens", &p.state_lens, "Write the lens into the model; without it, a pinhole");
   f->add("masks", &p.masks, "Write masks of the part");
-  f->add("tag", &p.tag, "id", -1, 586, "AprilTag 36h11 that lies on the table; -1: none");
+  f->add("tag", &p.tag, "id", -1, 586, "AprilTag 36h11 on the table; -1: none");
   f->add("tag-size", &p.tag_size, "world units", 0, 1e9,
-         "Edge of the tag's black square; 0 is a quarter of the extent");
+         "Edge of the tag's black square; 0: a quarter of the extent");
   f->add("pose-error", &p.pose_error_px, "px", 0, 50,
-         "RMS shift of the part's edges by the model's cameras, wrong as COLMAP's: alike from "
-         "neighbour to neighbour, and in focal length, principal point and lens");
+         "RMS shift of the part's edges by errors of the model's cameras, which are correlated "
+         "as COLMAP's are");
 }
 
 void list_object_fields(SynthesizeOptions* o, Fields* f) {
   f->group("Object");
   f->add("extent", &o->extent, "world units", 1e-9, 1e9, "Longest side of the object");
   f->add("smooth-angle", &o->smooth_angle_deg, "deg", 0.01, 89,
-         "Faces that meet at less have no edge");
+         "Faces that meet at a smaller angle have no edge");
   f->add("crease-angle", &o->crease_deg, "deg", 1, 180,
-         "Facets of a mesh that meet at more have an edge");
+         "Facets of a mesh that meet at a larger angle have an edge");
 }
 
 void list_part_fields(SynthesizeArguments* a, Fields* f) {
   Field& param = f->add("param", &a->parameters, "NAME=VALUE",
-                        "A dimension of a built-in part, otherwise drawn; may be repeated");
+                        "A dimension of a built-in part, otherwise random; may be repeated");
   param.several = true;
-  f->add("list-parts", &a->list_parts, "Print the built-in parts and their dimensions, no scene")
-      .alone = true;
+  f->add("list-parts", &a->list_parts, "Only print the built-in parts and their dimensions").alone =
+      true;
 }
 
 }  // namespace
@@ -191,7 +187,7 @@ Verb synthesize_verb() {
   Fields f;
   f.group("Arguments");
   f.add("part", &arguments->options.part, "PART",
-        "A STEP file, a mesh (OBJ, STL, PLY, OFF) or a built-in part: see --list-parts")
+        "A STEP file, a mesh (OBJ, STL, PLY, OFF) or a built-in part (--list-parts)")
       .positional = true;
   Field& out = f.add("out", &arguments->out, "SCENE", "The scene folder to write");
   out.required = true;

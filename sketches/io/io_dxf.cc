@@ -17,11 +17,11 @@ using Eigen::Vector3d;
 
 constexpr double kStraight = 1e-7;  // of the extent: arcs flatter than this are lines
 
-// Layers by kind (order: StrokeKind) and their AutoCAD colours: white, blue, green, magenta,
-// orange, rose.
+// Layers by kind (order: StrokeKind) and their AutoCAD colours, about those of kind_color(): blue,
+// orange, red, magenta, green, rose.
 constexpr const char* kLayer[kNumKinds] = {"LINE",    "ARC",    "CIRCLE",
                                            "ELLIPSE", "SPLINE", "ELLIPTIC_ARC"};
-constexpr int kColour[kNumKinds] = {7, 5, 3, 6, 30, 230};
+constexpr int kColour[kNumKinds] = {5, 30, 1, 6, 3, 230};
 
 // Axes that AutoCAD gives to the plane of an extrusion direction.
 void arbitrary_axes(const Vector3d& normal, Vector3d* x, Vector3d* y) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sketches/curve/curve.h"
+#include "sketches/graph/kind_color.h"
 #include "sketches/io/json.h"
 #include "sketches/io/little_endian.h"
 
@@ -80,7 +81,7 @@ void write_glb(std::ostream& out, const Sketch& sketch, const GlbOptions& option
     for (Eigen::Vector3d& p : points) p *= options.scale;
     add_positions(points, &bytes, &gltf);
     const int index = int(gltf["accessors"].size()) - 1;
-    const auto color = options.color(kind);
+    const auto color = kind_color(kind);
     gltf["materials"].push_back(
         {{"name", kind_name(kind)},
          {"pbrMetallicRoughness", {{"baseColorFactor", {color[0], color[1], color[2], 1}}}},

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <functional>
 #include <iosfwd>
 #include <string>
 
@@ -13,7 +11,6 @@ namespace sketchsplat {
 struct GlbOptions {
   std::string name = "sketch";  ///< UTF-8
   double scale = 1.0;           ///< metres, which the format counts in, per world unit
-  std::function<std::array<float, 3>(StrokeKind)> color;  ///< red, green, blue in [0, 1]
 };
 
 /// Binary glTF 2.0: a mesh of line segments and a colour for each kind of stroke, below a node that

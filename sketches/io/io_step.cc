@@ -6,6 +6,7 @@
 
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
+#include "sketches/graph/kind_color.h"
 #include "sketches/io/io.h"
 #include "sketches/io/step_file.h"
 
@@ -19,11 +20,8 @@ using step::real;
 using step::reference;
 using step::StepFile;
 
-// Of the kinds, in the order of StrokeKind: dark grey, blue, green, violet, orange, rose; and of
-// faces: light grey.
-const std::vector<StepPaint> kKindPaints = {
-    {"line", 0.15, 0.15, 0.15}, {"arc", 0.0, 0.35, 0.85},   {"circle", 0.0, 0.6, 0.3},
-    {"ellipse", 0.6, 0.1, 0.7}, {"spline", 0.9, 0.45, 0.0}, {"elliptic_arc", 0.85, 0.1, 0.45}};
+constexpr const char* kLayers[kNumKinds] = {"line",    "arc",    "circle",
+                                            "ellipse", "spline", "elliptic_arc"};
 const StepPaint kFacePaint = {"face", 0.8, 0.8, 0.8};
 
 // A share of the sketch's extent that no CAD program looks at: arcs flatter than it are lines.
@@ -165,6 +163,18 @@ void write_product(StepFile* file, const std::string& name, int representation) 
             reference(representation) + ")");
 }
 
+// One for each kind, in the order of StrokeKind.
+std::vector<StepPaint> kind_paints() {
+  std::vector<StepPaint> paints;
+  for (int k = 0; k < kNumKinds; ++k) {
+    const auto hundredths = [&](int c) {
+      return std::round(100 * kind_color(StrokeKind(k))[c]) / 100;
+    };
+    paints.push_back({kLayers[k], hundredths(0), hundredths(1), hundredths(2)});
+  }
+  return paints;
+}
+
 // How edges, or faces, of a paint look.
 int write_style(StepFile* file, const StepPaint& paint, bool faces, int font) {
   const std::string colour = reference(file->add("COLOUR_RGB(''," + real(paint.red) + "," +
@@ -302,7 +312,7 @@ void write_step(std::ostream& out, const Sketch& sketch, const StepOptions& opti
                 write_shape(&file, options.name, origin, wireframe, surfaces, context));
   const bool by_kind = options.paints.empty();
   if (sketch.size() > 0)
-    write_presentation(&file, by_kind ? kKindPaints : options.paints,
+    write_presentation(&file, by_kind ? kind_paints() : options.paints,
                        by_kind ? kinds_of(sketch) : options.paint_of_stroke, edges, faces, context);
   out << "ENDSEC;\nEND-ISO-10303-21;\n";
 }

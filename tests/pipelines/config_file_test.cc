@@ -38,7 +38,7 @@ TEST_F(Config, WhatIsSavedIsReadAgain) {
   EXPECT_EQ(saved(""), "[reconstruct]\n");
   const std::string some = saved(
       "--detector geometry --lift-views 30 --blends --without close,conics --min-confidence "
-      "0.5 --like 'a b.json' --like c.json --no-reproducible");
+      "0.5 --like 'a b.json' --like c.json --box=-1,-1,-1,1,1,1 --no-reproducible");
   EXPECT_THAT(some, AllOf(HasSubstr("detector=\"geometry\"\n"), HasSubstr("lift-views=30\n"),
                           HasSubstr("like=[\"a b.json\", \"c.json\"]\n"),
                           HasSubstr("blends=true\n"), HasSubstr("reproducible=false\n")));

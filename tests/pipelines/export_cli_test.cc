@@ -74,7 +74,7 @@ TEST_F(Export, StrokesOfUnknownConfidenceStayAndTheUserIsTold) {
   const Outcome o = run("export " + written(square_and_line()) + " --min-confidence 0.9 --out " +
                         in_folder("all.obj"));
   EXPECT_EQ(o.status, 0);
-  EXPECT_THAT(o.err, HasSubstr("knows no confidence"));
+  EXPECT_THAT(o.err, HasSubstr("has no confidences"));
   EXPECT_THAT(text_of_file(folder_ / "all.obj"), HasSubstr("l 5 6"));
   EXPECT_EQ(exported(square_and_line(), "plain.obj"), text_of_file(folder_ / "all.obj"));
 }

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "tests/pipelines/program.h"
 
@@ -30,18 +29,6 @@ class Habits : public Program {
   }
   static void TearDownTestSuite() { fs::remove_all(part_); }
 
-  // What a shell command writes to its standard output.
-  std::string shell(const std::string& command) const {
-    const std::string file = in_folder("shell.txt");
-    const int status = std::system(("(" + command + ") >'" + file + "' 2>&1 </dev/null").c_str());
-    EXPECT_EQ(status, 0) << command << "\n" << text_of_file(file);
-    return text_of_file(file);
-  }
-  // The program on a terminal: all that it writes there.
-  std::string on_terminal(const std::string& environment, const std::string& arguments) const {
-    return shell(environment + " script -qec \"'" + SKETCHSPLAT_BINARY + "' " + arguments +
-                 " || true\" /dev/null");
-  }
   static std::string scene() { return (part_ / "scene").string(); }
   static std::string result() { return (part_ / "result").string(); }
 
@@ -111,36 +98,6 @@ TEST_F(Habits, TheLogHasWhatIsSaidAndWhyItEnded) {
   EXPECT_THAT(text_of_file(log), AllOf(HasSubstr(" detect  "), HasSubstr("a scene folder")));
   EXPECT_EQ(run("detect " + scene() + " --log /proc/none/log --out " + in_folder("x")).status,
             kNoOutput);
-}
-
-TEST_F(Habits, WarningsComeAgainAtTheEnd) {
-  const fs::path broken = folder_ / "broken";
-  fs::copy(part_ / "scene", broken, fs::copy_options::recursive);
-  fs::remove(broken / "color" / "3_colors.png");
-  const Outcome o = run("detect " + broken.string() + " --out " + in_folder("maps"));
-  const std::string warning = "warning: frame 3_colors.png is left out: its image is missing\n";
-  ASSERT_EQ(o.status, 0);
-  EXPECT_EQ(o.err.substr(0, warning.size()), warning);
-  EXPECT_EQ(o.err.substr(o.err.size() - warning.size()), warning);
-}
-
-TEST_F(Habits, ColourIsForTerminalsOnly) {
-  if (std::system("script -qec true /dev/null >/dev/null 2>&1 </dev/null") != 0)
-    GTEST_SKIP() << "nothing here makes a terminal (script, and a pseudo-terminal)";
-  const std::string wrong = "detect " + in_folder("gone") + " --out x";
-  EXPECT_THAT(on_terminal("TERM=xterm NO_COLOR=", wrong),
-              HasSubstr("\033[31msketchsplat:\033[0m "));
-  EXPECT_THAT(on_terminal("TERM=xterm NO_COLOR=1", wrong), Not(HasSubstr("\033[3")));
-  EXPECT_THAT(on_terminal("TERM=dumb NO_COLOR=", wrong), Not(HasSubstr("\033[")));
-  EXPECT_EQ(run(wrong).err.find('\033'), std::string::npos);
-  const std::string work = "detect " + scene() + " --out " + in_folder("maps");
-  EXPECT_THAT(on_terminal("TERM=xterm", work), HasSubstr("] 0/12")) << "a bar";
-  EXPECT_THAT(on_terminal("TERM=dumb", work), Not(HasSubstr("] 0/12")));
-}
-
-TEST_F(Habits, TheVersionNamesCommitAndLibraries) {
-  EXPECT_TRUE(std::regex_search(run("--version").out,
-                                std::regex("\ncommit ([0-9a-f]{7,}(-dirty)?|unknown)\n")));
 }
 
 }  // namespace

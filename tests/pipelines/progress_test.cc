@@ -97,19 +97,6 @@ TEST(Progress, WarningsComeAgainAtTheEndUnlessNothingCameBetween) {
   EXPECT_EQ(text.substr(text.find('\n') + 1), "warning: view 21 is broken\n");
 }
 
-TEST(Progress, ManyWarningsComeAgainInPart) {
-  CaptureStderr();
-  Progress progress(Progress::Mode::kLines);
-  for (int i = 0; i < 30; ++i) progress.warn("view " + std::to_string(i));
-  progress.tell("something");
-  GetCapturedStderr();
-  CaptureStderr();
-  progress.repeat_warnings();
-  const std::string text = GetCapturedStderr();
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 21);
-  EXPECT_THAT(text, HasSubstr("and 10 more warnings\n"));
-}
-
 TEST(Progress, LogHasEveryLineWithTheTimeEvenIfSilent) {
   const std::string path = testing::TempDir() + "progress." + std::to_string(getpid()) + ".log";
   for (int run = 0; run < 2; ++run) {
@@ -134,7 +121,7 @@ TEST(Progress, ColourIsForWarningsAndOnlyWhereItIsWanted) {
   Progress progress(Progress::Mode::kLines);
   progress.use_color(true);
   progress.warn("x");
-  progress.tell("y");
+  progress.info("y");
   EXPECT_EQ(GetCapturedStderr(), "\033[33mwarning:\033[0m x\ny\n");
 }
 

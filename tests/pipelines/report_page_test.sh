@@ -101,14 +101,6 @@ circles.checked = true; circles.onchange();
 press('c'); viewer.draw();
 check('confidence colours what is sure green', pixels(canvas, [.08, .6, .3]) > 50);
 press('c'); press('c');
-press('h');
-check('some curves are hidden from here, others are not', (() => {
-  const direction = [Math.cos(-.9) * Math.cos(.5), Math.sin(-.9) * Math.cos(.5), Math.sin(.5)];
-  const n = curves.filter((c, i) => isHidden(i, direction)).length;
-  return n > 0 && n < curves.length;
-})());
-press('h');
-
 check('every view is there', photos.length === 16 && $('frame').max === '15');
 $('frame').value = 5; $('frame').oninput(); $('fade').value = 0; $('fade').oninput();
 check('the slider shows another', $('caption').textContent.includes('6 of 16'));

@@ -179,7 +179,7 @@ TEST_F(SolidsOfImages, HaveTablesInTheUnit) {
   EXPECT_THAT(surfaces, HasSubstr("\ncylinder_6,6,cylinder,cm,"));
   EXPECT_EQ(count_lines(text_of_file(in_folder("result/dimensions.csv"))), 7);
   ASSERT_EQ(reconstruct("result", "--solid off"), 0);
-  for (const char* file : {"surfaces.csv", "dimensions.csv", "solid.json"})
+  for (const char* file : {"surfaces.csv", "dimensions.csv", "solid.json", "solid.step"})
     EXPECT_FALSE(fs::exists(in_folder("result/") + file)) << file;
 }
 
@@ -203,14 +203,6 @@ TEST_F(SolidsOfImages, AreExportedAgainAtAnotherScale) {
       run("export '" + in_folder("scene") + "' --solid '" + in_folder("x.step") + "'");
   EXPECT_EQ(none.status, kBadInput);
   EXPECT_EQ(count_lines(none.err), 1);
-}
-
-TEST_F(SolidsOfImages, AreNotWrittenUnlessAskedFor) {
-  ASSERT_EQ(reconstruct("result", ""), 0);
-  ASSERT_TRUE(fs::exists(in_folder("result/solid.step")));
-  ASSERT_EQ(reconstruct("result", "--solid off"), 0);
-  EXPECT_FALSE(fs::exists(in_folder("result/solid.step"))) << "that of the run before is no result";
-  EXPECT_EQ(report("result")["written"], false);
 }
 
 TEST_F(Solids, ThatAreRequiredAndNotFoundAreTooLittleAfterAllElseIsWritten) {

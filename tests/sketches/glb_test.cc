@@ -15,9 +15,7 @@ using nlohmann::json;
 
 std::string glb(const Sketch& sketch, double scale = 1) {
   std::ostringstream out;
-  write_glb(out, sketch, {"part", scale, [](StrokeKind) {
-                            return std::array<float, 3>{0.5f, 0.25f, 0};
-                          }});
+  write_glb(out, sketch, {"part", scale});
   return out.str();
 }
 
