@@ -11,6 +11,8 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Vertex.hxx>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -61,39 +63,29 @@ class SolidOfShape {
   }
 
   static bool convert(const BRepAdaptor_Surface& a, Surface* s, bool* direct) {
-    const auto place = [&](const gp_Ax3& frame) {
+    const auto place = [&](SurfaceKind kind, const gp_Ax3& frame, double radius) {
+      s->kind = kind;
       s->origin = vector(frame.Location().XYZ());
       s->axis = vector(frame.Direction().XYZ());
+      s->radius = radius;
       *direct = frame.Direct();
+      return true;
     };
     switch (a.GetType()) {
       case GeomAbs_Plane:
-        place(a.Plane().Position());
+        place(SurfaceKind::kPlane, a.Plane().Position(), 0);
         if (!*direct) s->axis = -s->axis, *direct = true;
-        s->kind = SurfaceKind::kPlane;
         return true;
       case GeomAbs_Cylinder:
-        place(a.Cylinder().Position());
-        s->kind = SurfaceKind::kCylinder;
-        s->radius = a.Cylinder().Radius();
-        return true;
+        return place(SurfaceKind::kCylinder, a.Cylinder().Position(), a.Cylinder().Radius());
       case GeomAbs_Cone:
-        place(a.Cone().Position());
-        s->kind = SurfaceKind::kCone;
-        s->radius = a.Cone().RefRadius();
         s->slope = std::tan(a.Cone().SemiAngle());
-        return true;
+        return place(SurfaceKind::kCone, a.Cone().Position(), a.Cone().RefRadius());
       case GeomAbs_Sphere:
-        place(a.Sphere().Position());
-        s->kind = SurfaceKind::kSphere;
-        s->radius = a.Sphere().Radius();
-        return true;
+        return place(SurfaceKind::kSphere, a.Sphere().Position(), a.Sphere().Radius());
       case GeomAbs_Torus:
-        place(a.Torus().Position());
-        s->kind = SurfaceKind::kTorus;
-        s->radius = a.Torus().MajorRadius();
         s->minor_radius = a.Torus().MinorRadius();
-        return true;
+        return place(SurfaceKind::kTorus, a.Torus().Position(), a.Torus().MajorRadius());
       default:
         return false;
     }
@@ -138,23 +130,20 @@ class SolidOfShape {
 
   // Uses of a wire without its seams, as one or two loops.
   bool chain(std::vector<LoopStroke> uses, std::vector<Loop>* loops) const {
-    const auto begin = [&](const LoopStroke& u) {
+    const auto end = [&](const LoopStroke& u, bool last) {
       const Stroke& s = solid_.edges.strokes[u.stroke];
-      return u.forward ? s.begin : s.end;
-    };
-    const auto end = [&](const LoopStroke& u) {
-      const Stroke& s = solid_.edges.strokes[u.stroke];
-      return u.forward ? s.end : s.begin;
+      return u.forward == last ? s.end : s.begin;
     };
     while (!uses.empty()) {
       Loop loop = {uses[0]};
       uses.erase(uses.begin());
-      while (end(loop.back()) != begin(loop[0])) {
-        size_t k = 0;
-        while (k < uses.size() && begin(uses[k]) != end(loop.back())) ++k;
-        if (k == uses.size()) return false;
-        loop.push_back(uses[k]);
-        uses.erase(uses.begin() + long(k));
+      while (end(loop.back(), true) != end(loop[0], false)) {
+        const auto next = std::find_if(uses.begin(), uses.end(), [&](const LoopStroke& u) {
+          return end(u, false) == end(loop.back(), true);
+        });
+        if (next == uses.end()) return false;
+        loop.push_back(*next);
+        uses.erase(next);
       }
       loops->push_back(loop);
     }

@@ -2,6 +2,8 @@
 #include "topology/brep/build_solid.h"
 
 #include <BRep_Builder.hxx>
+#include <ShapeFix.hxx>
+#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
@@ -12,6 +14,7 @@
 
 #include "sketches/curve/curve.h"
 #include "topology/brep/build_face.h"
+#include "topology/brep/geometry.h"
 
 namespace sketchsplat::brep {
 namespace {
@@ -115,8 +118,7 @@ TopoDS_Shape assembled(const Solid& solid, const std::vector<TopoDS_Face>& faces
   return sets.size() == 1 ? TopoDS_Shape(shell) : TopoDS_Shape(loose);
 }
 
-}  // namespace
-
+// Of the box about the edges and the surfaces that have none.
 double extent_of(const Solid& solid) {
   double extent = largest_extent(solid.edges);
   for (const SolidFace& face : solid.faces) {
@@ -128,28 +130,30 @@ double extent_of(const Solid& solid) {
   return extent;
 }
 
-double working_scale(double extent) { return std::exp2(7 - std::ceil(std::log2(extent))); }
+}  // namespace
 
-BuiltSolid build_solid(const Solid& solid, double extent, bool open) {
-  check_indices(solid, open);
-  EdgeTable edges(solid, extent * kNear);
-  // Poles and ends of seams are where curves end, up to what these lie beside their surfaces.
-  edges.set_near(std::clamp(4 * solid.gap, kNear * extent, kMostNear * extent));
-  std::vector<FacePlan> plans;
-  const auto each = [&](const auto& make) {
-    for (size_t f = 0; f < solid.faces.size(); ++f) {
-      try {
-        make(f);
-      } catch (const Refused& why) {
-        throw Refused(of_face(f, solid.surfaces[solid.faces[f].surface].kind) + why.what());
-      }
-    }
-  };
-  each([&](size_t f) { plans.push_back(plan_face(solid, solid.faces[f], &edges)); });
-  edges.build();
+BuiltSolid build_solid(const Solid& given, bool open) {
   BuiltSolid built;
-  each([&](size_t f) { built.faces.push_back(build_face(plans[f], edges)); });
+  built.extent = extent_of(given);
+  if (!std::isfinite(built.extent) || !(built.extent > 0)) throw Refused("it has no extent");
+  built.scale = std::exp2(7 - std::ceil(std::log2(built.extent)));
+  built.extent *= built.scale;
+  const Solid solid = scaled(given, built.scale);
+  check_indices(solid, open);
+  const std::vector<TopoDS_Edge> edges = build_edges(solid, built.extent * kNear);
+  // Poles and ends of seams are where curves end, up to what these lie beside their surfaces.
+  const double near = std::clamp(4 * solid.gap, kNear * built.extent, kMostNear * built.extent);
+  const Handle(ShapeBuild_ReShape) context = new ShapeBuild_ReShape;
+  for (size_t f = 0; f < solid.faces.size(); ++f) {
+    try {
+      built.faces.push_back(build_face(solid, solid.faces[f], edges, near, context));
+    } catch (const Refused& why) {
+      throw Refused(of_face(f, solid.surfaces[solid.faces[f].surface].kind) + why.what());
+    }
+  }
+  for (TopoDS_Face& face : built.faces) face = TopoDS::Face(context->Apply(face));
   built.shape = assembled(solid, built.faces, open);
+  ShapeFix::SameParameter(built.shape, /*enforce=*/false);  // tolerances, by curves on surfaces
   return built;
 }
 

@@ -77,20 +77,21 @@ std::string orient(BuiltSolid* built) {
   return "";
 }
 
-std::string why_not(const Solid& solid, double extent, const SolidCheck& check,
-                    const BuiltSolid& built, bool open) {
-  if (!(check.tolerance <= kMostTolerance * extent)) {
+std::string why_not(const Solid& solid, const SolidCheck& check, const BuiltSolid& built,
+                    bool open) {
+  if (!(check.tolerance <= kMostTolerance * built.extent)) {
     std::ostringstream text;
     text.precision(2);
-    text << "curves lie beside their faces by " << check.tolerance / extent << " of the extent";
+    text << "curves lie beside their faces by " << check.tolerance / built.extent
+         << " of the extent";
     return text.str();
   }
   const std::string fault = brep::fault_of(built.shape);
   if (!fault.empty()) return fault;
   for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More() && !open; it.Next())
     if (!BRep_Tool::IsClosed(it.Current())) return "its faces do not close";
-  if (!open && !(check.volume > 1e-9 * std::pow(extent, 3))) return "it has no volume";
-  return self_intersection(solid, built, check.tolerance, extent);
+  if (!open && !(check.volume > 1e-9 * std::pow(built.extent, 3))) return "it has no volume";
+  return self_intersection(solid, built, check.tolerance);
 }
 
 }  // namespace
@@ -128,23 +129,17 @@ double tolerance_of(const TopoDS_Shape& shape) {
   return most;
 }
 
-SolidCheck check_solid(const Solid& solid, double extent, BuiltSolid* built) {
+SolidCheck check_solid(const Solid& solid, bool open, BuiltSolid* built) {
   SolidCheck check;
-  check.why = orient(built);
+  if (!open) check.why = orient(built);
   check.tolerance = tolerance_of(built->shape);
-  check.volume = volume_of(built->shape);
+  if (!open) check.volume = volume_of(built->shape);
   check.area = area_of(built->shape);
-  if (check.why.empty()) check.why = why_not(solid, extent, check, *built, /*open=*/false);
+  if (check.why.empty()) check.why = why_not(solid, check, *built, open);
   check.valid = check.why.empty();
-  return check;
-}
-
-SolidCheck check_shell(const Solid& shell, double extent, const BuiltSolid& built) {
-  SolidCheck check;
-  check.tolerance = tolerance_of(built.shape);
-  check.area = area_of(built.shape);
-  check.why = why_not(shell, extent, check, built, /*open=*/true);
-  check.valid = check.why.empty();
+  check.volume /= std::pow(built->scale, 3);
+  check.area /= std::pow(built->scale, 2);
+  check.tolerance /= built->scale;
   return check;
 }
 

@@ -9,19 +9,15 @@
 
 namespace sketchsplat::brep {
 
-/// Turns the solid inside out if need be, and measures and checks it, in its own units. `extent`:
-/// longest side of its box.
-SolidCheck check_solid(const Solid& solid, double extent, BuiltSolid* built);
-
-/// The same of shells that need not close: without a volume, and as they are turned.
-SolidCheck check_shell(const Solid& shell, double extent, const BuiltSolid& built);
+/// Turns the solid inside out if need be, and measures and checks it, in units of the solid.
+/// `open`: shells that need not close, without a volume, and as they are turned.
+SolidCheck check_solid(const Solid& solid, bool open, BuiltSolid* built);
 
 /// What BRepCheck_Analyzer finds first, as a clause; empty if the shape is valid.
 std::string fault_of(const TopoDS_Shape& shape);
 
 /// Where it runs through itself beyond the tolerances, as a clause; empty if it does not.
-std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance,
-                              double extent);
+std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance);
 
 std::string kind_of(const TopoDS_Shape& shape);  ///< "face", "edge", ...
 

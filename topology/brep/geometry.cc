@@ -71,16 +71,26 @@ EdgeCurve cubic(const ControlPoints& c) {
   return {GeomConvert::CurveToBSplineCurve(bezier), 0, 1, false};
 }
 
-// Half-angle 0 .. pi / 2 between an axis and the point of the border nearest to it, as a cosine.
-double nearest_to_axis(const Vector3d& axis, const Vector3d& centre,
-                       const std::vector<Vector3d>& border) {
-  double most = 0;
-  for (const Vector3d& p : border)
-    most = std::max(most, std::abs(axis.dot((p - centre).normalized())));
-  return most;
+// Along the axis of a sphere, in radii: how near the border comes to a pole, and how far it climbs
+// up and down in all.
+struct Heights {
+  double highest = 0, climbed = 0;
+};
+Heights heights_of(const std::vector<Vector3d>& border, const Surface& sphere,
+                   const Vector3d& axis) {
+  Heights out;
+  double last = NAN;
+  for (const Vector3d& p : border) {
+    const double height = axis.dot(p - sphere.origin) / sphere.radius;
+    out.highest = std::max(out.highest, std::abs(height));
+    if (!std::isnan(last)) out.climbed += std::abs(height - last);
+    last = height;
+  }
+  return out;
 }
 
-// Poles are where parameters mean nothing, so they stay away from the border.
+// Poles are where parameters mean nothing, so they stay away from the border; and circles about the
+// axis are lines in parameters, others splines.
 Vector3d sphere_axis(const Surface& surface, const std::vector<Vector3d>& border) {
   std::vector<Vector3d> candidates = {surface.axis};
   for (int x = -1; x <= 1; ++x)
@@ -96,13 +106,14 @@ Vector3d sphere_axis(const Surface& surface, const std::vector<Vector3d>& border
     const Eigen::Matrix3d principal = eigen_symmetric(spread).vectors;
     for (int k = 0; k < 3; ++k) candidates.push_back(principal.col(k));
   }
-  Vector3d best = surface.axis;
-  double least = 2;
-  for (const Vector3d& axis : candidates) {
-    const double nearest = nearest_to_axis(axis, surface.origin, border);
-    if (nearest < least - 0.05) best = axis, least = nearest;
-  }
-  return best;
+  constexpr double kNearPole = 0.99;
+  const auto price = [&](const Vector3d& axis) {
+    const Heights h = heights_of(border, surface, axis);
+    return std::pair(h.highest > kNearPole ? h.highest : 0, h.climbed);
+  };
+  return *std::min_element(
+      candidates.begin(), candidates.end(),
+      [&](const Vector3d& a, const Vector3d& b) { return price(a) < price(b); });
 }
 
 Handle(Geom_Surface) cone(const Surface& s, const std::vector<Vector3d>& border) {

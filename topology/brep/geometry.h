@@ -4,9 +4,13 @@
 #include <Eigen/Core>
 #include <Geom_Curve.hxx>
 #include <Geom_Surface.hxx>
+#include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <gp_Dir.hxx>
 #include <gp_Pnt.hxx>
+#include <new>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "sketches/graph/solid.h"
@@ -17,6 +21,19 @@ namespace sketchsplat::brep {
 struct Refused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// Does what asks OpenCASCADE, whose failures become Refused; std::bad_alloc where memory runs out.
+template <typename Work>
+auto with_refusals(const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
+  } catch (const Standard_Failure& failure) {
+    const std::string what = failure.GetMessageString() ? failure.GetMessageString() : "";
+    throw Refused("OpenCASCADE gives up" + (what.empty() ? "" : ": " + what));
+  }
+}
 
 inline gp_Pnt to_point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 inline gp_Dir to_direction(const Eigen::Vector3d& d) { return {d.x(), d.y(), d.z()}; }

@@ -2,14 +2,12 @@
 #include "topology/brep/overlap.h"
 
 #include <BRepAlgoAPI_Common.hxx>
-#include <Standard_Failure.hxx>
-#include <Standard_OutOfMemory.hxx>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
 
 #include "topology/brep/check.h"
+#include "topology/brep/geometry.h"
 
 namespace sketchsplat::brep {
 namespace {
@@ -108,14 +106,14 @@ double overlap_by_lines(const std::vector<MeshedFace>& a, const std::vector<Mesh
 
 double overlap_by_boolean(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   try {
-    BRepAlgoAPI_Common common(a, b);
-    if (!common.IsDone() || common.HasErrors()) return -1;
-    const double both = volume_of(common.Shape());
-    const double either = volume_of(a) + volume_of(b) - both;
-    return either > 0 ? both / either : -1;
-  } catch (const Standard_OutOfMemory&) {
-    throw std::bad_alloc();
-  } catch (const Standard_Failure&) {
+    return with_refusals([&] {
+      BRepAlgoAPI_Common common(a, b);
+      if (!common.IsDone() || common.HasErrors()) return -1.0;
+      const double both = volume_of(common.Shape());
+      const double either = volume_of(a) + volume_of(b) - both;
+      return either > 0 ? both / either : -1;
+    });
+  } catch (const Refused&) {
     return -1;
   }
 }

@@ -84,9 +84,8 @@ bool meet_elsewhere(const TopoDS_Shape& a, const TopoDS_Shape& b, double near) {
 
 }  // namespace
 
-std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance,
-                              double extent) {
-  const double near = std::max(10 * tolerance, 1e-6 * extent);
+std::string self_intersection(const Solid& solid, const BuiltSolid& built, double tolerance) {
+  const double near = std::max(10 * tolerance, 1e-6 * built.extent);
   BOPAlgo_ArgumentAnalyzer analyzer;
   analyzer.SetShape1(built.shape);
   analyzer.ArgumentTypeMode() = false;
