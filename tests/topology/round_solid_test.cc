@@ -7,12 +7,12 @@
 
 #include "gmock/gmock.h"
 #include "tests/support/strokes.h"
+#include "tests/topology/found_solid.h"
 #include "tests/topology/solids.h"
-#include "topology/brep/solid_step.h"
 #include "topology/faces/find_planes.h"
+#include "topology/solid/cell_index.h"
 #include "topology/solid/circle_rim.h"
 #include "topology/solid/crossing_cells.h"
-#include "topology/solid/find_solid.h"
 #include "topology/solid/round_families.h"
 
 namespace sketchsplat {
@@ -104,10 +104,7 @@ TEST(FindSolid, ContoursTellABallFromItsOneEdge) {
   evidence.contours = touching(
       cap.surfaces[0], [](const Vector3d& p) { return p.z() > -0.5; }, 90);
   const SolidSearch search = find_solid(cap.edges, {}, evidence);
-  ASSERT_TRUE(search.solid) << search.why;
-  const SolidCheck check = write_solid_step(*search.solid, "");
-  EXPECT_TRUE(check.valid) << check.why;
-  EXPECT_NEAR(check.volume, M_PI * 1.5 * 1.5 * (3 - 1.5) / 3, 1e-3);
+  EXPECT_NEAR(check_of(search).volume, M_PI * 1.5 * 1.5 * (3 - 1.5) / 3, 1e-3);
 }
 
 TEST(FindSolid, ABentPipeHasTheRadiusOfItsContours) {
@@ -123,11 +120,8 @@ TEST(FindSolid, ABentPipeHasTheRadiusOfItsContours) {
       3, &evidence);
   for (const bool turned : {false, true}) {
     const SolidSearch search = find_solid(pipe_edges(turned), {}, evidence);
-    ASSERT_TRUE(search.solid) << search.why;
-    const SolidCheck check = write_solid_step(*search.solid, "");
-    EXPECT_TRUE(check.valid) << check.why;
-    EXPECT_EQ(search.solid->faces.size(), 8u);
-    EXPECT_NEAR(check.volume, M_PI * (0.25 - 0.09) * (M_PI + 2), 1e-3);
+    EXPECT_EQ(search.faces, 8);
+    EXPECT_NEAR(check_of(search).volume, M_PI * (0.25 - 0.09) * (M_PI + 2), 1e-3);
   }
 }
 
@@ -164,10 +158,8 @@ TEST(FindSolid, TwoCirclesOfABallAreEnoughEvenIfOneIsNearlyAnEllipse) {
                                {{0, 0, -0.6}, {0.8 + stretch, 0, 0}, {0, 0.8 - stretch, 0}});
     else
       m.circle({0, 0, -0.6}, Vector3d::UnitZ(), 0.8);
-    const SolidSearch search = find_solid(m.solid.edges, {}, evidence);
-    ASSERT_TRUE(search.solid) << search.why;
-    EXPECT_NEAR(write_solid_step(*search.solid, "").volume, 4 * M_PI / 3 - cap(0.4) - cap(0.2),
-                1e-6 + 2 * stretch);
+    EXPECT_NEAR(check_of(find_solid(m.solid.edges, {}, evidence)).volume,
+                4 * M_PI / 3 - cap(0.4) - cap(0.2), 1e-6 + 2 * stretch);
   }
 }
 
@@ -179,12 +171,13 @@ TEST(Cells, ATorusBetweenTwoRimsHasTwo) {
         cells_of(sketch, polylines_of(sketch), {torus, {0, 1}, around_tube}, 0);
     ASSERT_EQ(cells.size(), 2u);
     const Layout layout(torus, around_tube);
+    const CellIndex index[2] = {{cells[0], layout}, {cells[1], layout}};
     // Three quarters of the ring or of the tube in the one, a quarter in the other.
     int in[2] = {0, 0};
     for (int i = 0; i < 400; ++i) {
       const Eigen::Vector2d flat =
           layout.periods().cwiseProduct(Eigen::Vector2d((i % 20 + 0.5) / 20, (i / 20 + 0.5) / 20));
-      for (int k = 0; k < 2; ++k) in[k] += holds(cells[k], layout, flat);
+      for (int k = 0; k < 2; ++k) in[k] += index[k].holds(flat);
     }
     EXPECT_EQ(std::max(in[0], in[1]), 300);
     EXPECT_EQ(std::min(in[0], in[1]), 100);

@@ -17,34 +17,9 @@ using ::testing::IsEmpty;
 
 Sketch box() { return box_solid({0, 0, 0}, {3, 2, 1}).edges; }
 
-Sketch without(const Sketch& sketch, int stroke) {
-  std::vector<bool> keep(sketch.size(), true);
-  keep[stroke] = false;
-  return keep_strokes(sketch, keep);
-}
-
-// A flat bar, square to z, that ends in an arc between `low` and `high`, both at x = 1. Strokes 0
-// to 3 lie at height 0, the second one of which is the arc, 4 to 7 at height 1; then the two
-// corners.
-Sketch tongue(const Vector3d& low, const Vector3d& high, double apex) {
-  SolidMaker m;
-  for (const double z : {0.0, 1.0}) {
-    const Vector3d up(0, 0, z);
-    const int a = m.node(Vector3d(-2, low.y(), 0) + up), b = m.node(low + up),
-              c = m.node(high + up), d = m.node(Vector3d(-2, high.y(), 0) + up);
-    m.line(a, b);
-    m.arc(b, c, Vector3d(apex, 0, z));
-    m.line(c, d);
-    m.line(d, a);
-  }
-  m.line(0, 4);
-  m.line(3, 7);
-  return m.solid.edges;
-}
-
 TEST(SharpEdges, AnEdgeThatNoImageShowsIsAddedIfAskedFor) {
   for (int s = 0; s < 12; ++s) {
-    const SolidSearch found = find_solid(without(box(), s));
+    const SolidSearch found = find_solid(without(box(), {s}));
     ASSERT_TRUE(found.solid) << found.why;
     const SharpEdges all = sharp_edges(found, true), seen = sharp_edges(found, false);
     EXPECT_EQ(all.sketch.size(), 12);
@@ -55,17 +30,13 @@ TEST(SharpEdges, AnEdgeThatNoImageShowsIsAddedIfAskedFor) {
   }
 }
 
-TEST(SharpEdges, WhereARoundRunsSmoothlyIntoAFlatThereIsNoEdge) {
-  const SolidSearch found = find_solid(tongue({1, -1, 0}, {1, 1, 0}, 2));
-  ASSERT_TRUE(found.solid) << found.why;
-  EXPECT_EQ(found.solid->edges.size(), 12);
-  EXPECT_EQ(sharp_edges(found, true).sketch.size(), 10);
-}
-
-TEST(SharpEdges, WhereARoundMeetsAFlatAtAnAngleThereIsOne) {
-  const SolidSearch found = find_solid(tongue({1, -1, 0}, {1, 1, 0}, 1.3));
-  ASSERT_TRUE(found.solid) << found.why;
-  EXPECT_EQ(sharp_edges(found, true).sketch.size(), 12);
+TEST(SharpEdges, WhereARoundMeetsAFlatThereIsAnEdgeUnlessItRunsSmoothlyIntoIt) {
+  for (const double apex : {2.0, 1.3}) {
+    const SolidSearch found = find_solid(tongue_edges(apex));
+    ASSERT_TRUE(found.solid) << found.why;
+    EXPECT_EQ(found.solid->edges.size(), 12);
+    EXPECT_EQ(sharp_edges(found, true).sketch.size(), apex == 2 ? 10 : 12);
+  }
 }
 
 TEST(SharpEdges, StrokesAreFoundAgain) {
@@ -94,18 +65,14 @@ TEST(SharpEdges, StrokesAreFoundAgain) {
 // A box of 4 x 3 x 2 with a square in its top of which nothing tells how deep it goes.
 Sketch box_with_rim() {
   SolidMaker m;
-  m.solid.edges = box_solid({-2, -1.5, 0}, {2, 1.5, 2}).edges;
-  m.solid.inferred.assign(12, false);
-  std::vector<int> n;
-  for (const auto& [x, y] : {std::pair(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
-    n.push_back(m.node({x, y, 2}));
-  for (int i = 0; i < 4; ++i) m.line(n[size_t(i)], n[size_t(i + 1) % 4]);
+  m.frame(2, 1.5, 0, 2);
+  m.rectangle(0.5, 0.5, {0, 0, 2});
   return m.solid.edges;
 }
 
 TEST(SharpEdges, BetweenFacesThatAreSureTheyAreAddedWithoutASolid) {
   for (int s = 0; s < 12; ++s) {
-    const Sketch seen = without(box_with_rim(), s);
+    const Sketch seen = without(box_with_rim(), {s});
     const SolidSearch found = find_solid(seen);
     EXPECT_FALSE(found.solid);
     ASSERT_TRUE(found.shell) << found.why;
@@ -124,15 +91,9 @@ TEST(SharpEdges, BetweenFacesThatAreSureTheyAreAddedWithoutASolid) {
 // hole's four edges are inferred, of the pocket nothing is.
 TEST(SharpEdges, OfAHoleBesideAPocketNobodySeesIntoAreAdded) {
   SolidMaker m;
-  m.solid.edges = box_solid({-3, -1.5, 0}, {3, 1.5, 2}).edges;
-  m.solid.inferred.assign(12, false);
-  const auto rim = [&](double x, double z) {
-    std::vector<int> n;
-    for (const auto& [dx, y] : {std::pair(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
-      n.push_back(m.node({x + dx, y, z}));
-    for (int i = 0; i < 4; ++i) m.line(n[size_t(i)], n[size_t(i + 1) % 4]);
-  };
-  rim(-1.5, 2), rim(-1.5, 0), rim(1.5, 2);
+  m.frame(3, 1.5, 0, 2);
+  for (const Vector3d& rim : {Vector3d(-1.5, 0, 2), Vector3d(-1.5, 0, 0), Vector3d(1.5, 0, 2)})
+    m.rectangle(0.5, 0.5, rim);
   const SolidSearch found = find_solid(m.solid.edges);
   EXPECT_FALSE(found.solid);
   ASSERT_TRUE(found.shell) << found.why;

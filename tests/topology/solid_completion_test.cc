@@ -5,9 +5,8 @@
 
 #include "gmock/gmock.h"
 #include "sketches/curve/curve.h"
+#include "tests/topology/found_solid.h"
 #include "tests/topology/solids.h"
-#include "topology/brep/solid_step.h"
-#include "topology/solid/find_solid.h"
 
 namespace sketchsplat {
 namespace {
@@ -16,51 +15,33 @@ using Eigen::Vector3d;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Sketch without(const Sketch& sketch, const std::vector<int>& strokes) {
-  std::vector<bool> keep(sketch.size(), true);
-  for (const int s : strokes) keep[s] = false;
-  return keep_strokes(sketch, keep);
-}
-
-double volume_of(const SolidSearch& search) {
-  if (!search.solid) return 0;
-  const SolidCheck check = write_solid_step(*search.solid, "");
-  EXPECT_TRUE(check.valid) << check.why;
-  return check.volume;
-}
-
-// Rectangle of four lines at a height; its corners, counter-clockwise.
-std::vector<int> rectangle(SolidMaker* m, double x, double y, double z) {
-  std::vector<int> n;
-  for (const auto& [a, b] : {std::pair(-x, -y), {x, -y}, {x, y}, {-x, y}})
-    n.push_back(m->node({a, b, z}));
-  for (int i = 0; i < 4; ++i) m->line(n[size_t(i)], n[size_t(i + 1) % 4]);
-  return n;
-}
-
-// A box of 4 x 3 x 2 with a pocket of 2 x 1 x 1 in its top: strokes 0 to 11 are the box, then the
-// rim (4), the floor (4) and the corners (4) of the pocket.
-Sketch pocket() {
+// A box of 4 x 3 x 2.
+SolidMaker box() {
   SolidMaker m;
-  const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
-  for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
-  const std::vector<int> rim = rectangle(&m, 1, 0.5, 2), floor = rectangle(&m, 1, 0.5, 1);
-  for (size_t i = 0; i < 4; ++i) m.line(rim[i], floor[i]);
+  m.frame(2, 1.5, 0, 2);
+  return m;
+}
+
+// It with a pocket of 2 x 1 x 1 in its top: strokes 0 to 11 are the box, then the rim (4), the
+// floor (4) and the corners (4) of the pocket.
+Sketch pocket() {
+  SolidMaker m = box();
+  m.frame(1, 0.5, 2, 1);
   return m.solid.edges;
 }
 
 TEST(SolidCompletion, AFloorIsACopyOfTheRimAtTheDepthThatOneEdgeOrTwoCornersTell) {
-  EXPECT_NEAR(volume_of(find_solid(pocket())), 24 - 2, 1e-9);
+  EXPECT_NEAR(volume_of(pocket()), 24 - 2, 1e-9);
   for (const int corner : {20, 21, 22}) {  // the rim and two lines down from it
     std::vector<int> missing = {16, 17, 18, 19};
     for (const int s : {20, 21, 22, 23})
       if (s != corner && s != corner + 1) missing.push_back(s);
-    EXPECT_NEAR(volume_of(find_solid(without(pocket(), missing))), 24 - 2, 1e-9);
+    EXPECT_NEAR(volume_of(without(pocket(), missing)), 24 - 2, 1e-9);
     missing.push_back(corner);
     EXPECT_FALSE(find_solid(without(pocket(), missing)).solid) << "one may go on unseen";
   }
   // The rim and one edge of the floor.
-  EXPECT_NEAR(volume_of(find_solid(without(pocket(), {17, 18, 19, 20, 21, 22, 23}))), 24 - 2, 1e-9);
+  EXPECT_NEAR(volume_of(without(pocket(), {17, 18, 19, 20, 21, 22, 23})), 24 - 2, 1e-9);
 }
 
 TEST(SolidCompletion, APocketOfUnknownDepthIsRefused) {
@@ -70,20 +51,17 @@ TEST(SolidCompletion, APocketOfUnknownDepthIsRefused) {
 }
 
 TEST(SolidCompletion, TwoOutlinesAloneAreJoinedAtTheirCorners) {
-  const SolidSearch search = find_solid(without(pocket(), {8, 9, 10, 11}));
-  EXPECT_NEAR(volume_of(search), 24 - 2, 1e-9);
+  EXPECT_NEAR(volume_of(without(pocket(), {8, 9, 10, 11})), 24 - 2, 1e-9);
 }
 
 TEST(SolidCompletion, LinesThatEndShortlyBeforeAPlaneEndInIt) {
   for (const bool foot_is_seen : {true, false}) {
-    SolidMaker m;
-    const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
-    for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
-    if (foot_is_seen) rectangle(&m, 1, 0.5, 2);
-    const std::vector<int> top = rectangle(&m, 1, 0.5, 3);
+    SolidMaker m = box();
+    if (foot_is_seen) m.rectangle(1, 0.5, {0, 0, 2});
+    const std::vector<int> top = m.rectangle(1, 0.5, {0, 0, 3});
     for (size_t i = 0; i < 4; ++i)
       m.line(m.node(m.solid.edges.nodes.col(top[i]) - Eigen::Vector3d(0, 0, 0.988)), top[i]);
-    EXPECT_NEAR(volume_of(find_solid(m.solid.edges)), 24 + 2, 1e-6);
+    EXPECT_NEAR(volume_of(m.solid.edges), 24 + 2, 1e-6);
   }
 }
 
@@ -104,18 +82,15 @@ TEST(SolidCompletion, JointsOfLinesAndArcsMaySlideAlongThem) {
       m.line(e, f);
       m.arc(f, a, {-3 + k, -2 + k, z});
     }
-    const SolidSearch search = find_solid(m.solid.edges);
-    EXPECT_NEAR(volume_of(search), 2 * (24 - 2 * (1 - M_PI / 4)), 0.02) << search.why;
+    EXPECT_NEAR(volume_of(m.solid.edges), 2 * (24 - 2 * (1 - M_PI / 4)), 0.02) << slide;
   }
 }
 
 TEST(SolidCompletion, AnEdgeSeenTwiceIsOneEdge) {
-  SolidMaker m;
-  const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
-  for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+  SolidMaker m = box();
   m.line(m.node({-1.5, 1.51, 1.99}), m.node({1, 1.505, 2.01}));
   const SolidSearch search = find_solid(m.solid.edges);
-  EXPECT_NEAR(volume_of(search), 24, 1e-9);
+  EXPECT_NEAR(check_of(search).volume, 24, 1e-9);
   EXPECT_EQ(search.twice, 1);
   EXPECT_THAT(search.doubtful, IsEmpty());
 }
@@ -123,9 +98,7 @@ TEST(SolidCompletion, AnEdgeSeenTwiceIsOneEdge) {
 // The floor of a round-cornered pocket, of which arcs are seen that end too early or too late.
 TEST(SolidCompletion, PiecesOfAFloorThatEndWrongAreItsCopySeenTwice) {
   for (const double turn : {1.35, 1.57, 1.75}) {
-    SolidMaker m;
-    const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 2);
-    for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+    SolidMaker m = box();
     const double r = 0.4, x = 1.2, y = 0.7;
     std::vector<int> rim;
     for (int corner = 0; corner < 4; ++corner) {
@@ -141,19 +114,16 @@ TEST(SolidCompletion, PiecesOfAFloorThatEndWrongAreItsCopySeenTwice) {
         m.arc(m.node(at(0) + down), m.node(at(turn) + down), at(turn / 2) + down);
     }
     for (size_t i = 1; i < 8; i += 2) m.line(rim[i], rim[(i + 1) % 8]);
-    const SolidSearch search = find_solid(m.solid.edges);
-    EXPECT_NEAR(volume_of(search), 24 - (4 * x * y - (4 - M_PI) * r * r), 0.01)
-        << turn << search.why;
+    EXPECT_NEAR(volume_of(m.solid.edges), 24 - (4 * x * y - (4 - M_PI) * r * r), 0.01) << turn;
   }
 }
 
 TEST(SolidCompletion, AThinWallAsksForAFineTolerance) {
   SolidMaker m;
-  const std::vector<int> low = rectangle(&m, 2, 1.5, 0), high = rectangle(&m, 2, 1.5, 0.08);
-  for (size_t i = 0; i < 4; ++i) m.line(low[i], high[i]);
+  m.frame(2, 1.5, 0, 0.08);
   SolidOptions options;
   options.tolerance = 4e-3;
-  EXPECT_NEAR(volume_of(find_solid(m.solid.edges, options)), 0.96, 1e-9);
+  EXPECT_NEAR(check_of(find_solid(m.solid.edges, options)).volume, 0.96, 1e-9);
 }
 
 // The plate of half a side's thickness, its hole's upper rim from `first` to `last` [rad] in two
@@ -179,10 +149,9 @@ Sketch plate_with_open_rim(double first, double middle_end, double middle_begin,
 }
 
 TEST(SolidCompletion, ArcsOfOneCircleGoOnFromOneToTheOther) {
-  const double volume = volume_of(find_solid(plate_with_hole(0.5).edges));
-  EXPECT_NEAR(volume_of(find_solid(plate_with_open_rim(0, 2, 3, 5.5))), volume, 1e-6);  // gaps
-  EXPECT_NEAR(volume_of(find_solid(plate_with_open_rim(0, 3.2, 3, 6.4))), volume,
-              1e-6);  // overlaps
+  const double volume = volume_of(plate_with_hole(0.5).edges);
+  EXPECT_NEAR(volume_of(plate_with_open_rim(0, 2, 3, 5.5)), volume, 1e-6) << "gaps";
+  EXPECT_NEAR(volume_of(plate_with_open_rim(0, 3.2, 3, 6.4)), volume, 1e-6) << "overlaps";
 }
 
 // A pipe of radius 1 along x and a branch of radius 0.6 along z: cubics follow where they meet.
@@ -217,7 +186,7 @@ TEST(SolidCompletion, CurvesThatOnlyFollowAnEdgeDoNotBendItsSurfaces) {
     const double y = -0.6 + 1.2 * (i + 0.5) / kSteps;
     branch += 2 * std::sqrt(0.36 - y * y) * (2 - std::sqrt(1 - y * y)) * 1.2 / kSteps;
   }
-  EXPECT_NEAR(volume_of(search), 4 * M_PI + branch, 1e-3);
+  EXPECT_NEAR(check_of(search).volume, 4 * M_PI + branch, 1e-3);
   std::vector<double> radii;
   for (const Surface& s : search.solid->surfaces)
     if (s.kind == SurfaceKind::kCylinder) radii.push_back(s.radius);

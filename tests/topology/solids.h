@@ -48,6 +48,20 @@ struct SolidMaker {
     }
     return {line(a, b), true};
   }
+  /// Lines around a rectangle of half sides x and y at a height, and its corners,
+  /// counter-clockwise.
+  std::vector<int> rectangle(double x, double y, const Vector3d& middle) {
+    std::vector<int> n;
+    for (const auto& [a, b] : {std::pair(-x, -y), {x, -y}, {x, y}, {-x, y}})
+      n.push_back(node(middle + Vector3d(a, b, 0)));
+    for (int i = 0; i < 4; ++i) line(n[size_t(i)], n[size_t(i + 1) % 4]);
+    return n;
+  }
+  /// Two rectangles about z and the lines between their corners.
+  void frame(double x, double y, double low, double high) {
+    const std::vector<int> a = rectangle(x, y, {0, 0, low}), b = rectangle(x, y, {0, 0, high});
+    for (size_t i = 0; i < 4; ++i) line(a[i], b[i]);
+  }
   static Surface plane(const Vector3d& p, const Vector3d& n) {
     return {SurfaceKind::kPlane, p, n.normalized()};
   }
@@ -122,6 +136,30 @@ inline Solid cone_solid(double top) {
     m.face(side, false, {{{base, true}}});
   }
   return m.solid;
+}
+
+/// The edges of a bar of thickness 1 along x, from -2 to 1, with an arc of apex (`apex`, 0) between
+/// (1, -1) and (1, 1) at its end: one of radius 1 if it is 2. Nothing shows where flat sides run
+/// into the round. Strokes 0 to 3 lie at height 0, the second one is the arc; 4 to 7 at height 1.
+inline Sketch tongue_edges(double apex = 2) {
+  SolidMaker m;
+  for (const double z : {0.0, 1.0}) {
+    const int a = m.node({-2, -1, z}), b = m.node({1, -1, z}), c = m.node({1, 1, z}),
+              d = m.node({-2, 1, z});
+    m.line(a, b);
+    m.arc(b, c, {apex, 0, z});
+    m.line(c, d);
+    m.line(d, a);
+  }
+  m.line(0, 4);
+  m.line(3, 7);
+  return m.solid.edges;
+}
+
+inline Sketch without(const Sketch& sketch, const std::vector<int>& strokes) {
+  std::vector<bool> keep(sketch.size(), true);
+  for (const int s : strokes) keep[s] = false;
+  return keep_strokes(sketch, keep);
 }
 
 inline Solid sphere_solid() {

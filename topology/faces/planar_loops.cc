@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "topology/faces/stroke_graph.h"
+#include "topology/faces/pieces.h"
 
 namespace sketchsplat {
 namespace {
@@ -41,31 +41,10 @@ bool polygons_cross(const Matrix2Xd& p, const Matrix2Xd& q, bool same) {
   return false;
 }
 
-// The smallest counter-clockwise cycle of another part around this one, larger than this one; -1 if
-// there is none. Of two parts that cross, each may have most of the other inside.
-int container(const std::vector<Cycle>& cycles, const Cycle& inner) {
-  int best = -1;
-  for (int i = 0; i < int(cycles.size()); ++i) {
-    const Cycle& c = cycles[i];
-    if (c.part == inner.part || c.area <= -inner.area) continue;
-    if (best >= 0 && c.area >= cycles[best].area) continue;
-    const int n = int(inner.polygon.cols());
-    int inside = 0;
-    for (const int k : {0, n / 3, 2 * n / 3}) {
-      const Vector2d middle = (inner.polygon.col(k) + inner.polygon.col((k + 1) % n)) / 2;
-      inside += is_inside(middle, c.polygon);
-    }
-    if (inside >= 2) best = i;
-  }
-  return best;
-}
-
-bool is_clean(const std::vector<Cycle>& cycles, int outer, const std::vector<int>& holes) {
-  std::vector<int> all = holes;
-  all.push_back(outer);
-  for (size_t i = 0; i < all.size(); ++i)
-    for (size_t k = i; k < all.size(); ++k)
-      if (polygons_cross(cycles[all[i]].polygon, cycles[all[k]].polygon, i == k)) return false;
+bool is_clean(const std::vector<Matrix2Xd>& polygons) {
+  for (size_t i = 0; i < polygons.size(); ++i)
+    for (size_t k = i; k < polygons.size(); ++k)
+      if (polygons_cross(polygons[i], polygons[k], i == k)) return false;
   return true;
 }
 
@@ -80,38 +59,30 @@ std::vector<PlanarFace> faces_in_plane(const Sketch& sketch,
   std::vector<Matrix2Xd> lines;
   for (const int m : members) lines.push_back(project * (polylines[m].colwise() - plane.origin));
   const std::vector<Cycle> cycles = simple_cycles(sketch, members, lines);
-  // What lies around every part, by the clockwise walk along its outside.
-  std::map<int, int> around;
-  std::vector<bool> walk_has_inside(2 * members.size() + 1);
-  for (const Cycle& c : cycles)
-    if (c.area > 0) walk_has_inside[c.walk] = true;
-  for (const Cycle& c : cycles)
-    if (c.area <= 0 && !walk_has_inside[c.walk]) around.emplace(c.part, container(cycles, c));
+  const std::vector<SurfacePiece> pieces =
+      pieces_of(cycles, Vector2d::Zero(), [](int) { return NAN; });
+  std::map<int, int> around;  // of a part: the part in a piece of which it lies
+  for (const SurfacePiece& piece : pieces)
+    for (const int c : piece.cycles) {
+      const int outer = cycles[piece.cycles[0]].part;
+      if (cycles[c].part != outer) around.emplace(cycles[c].part, outer);
+    }
   const auto depth = [&](int part) {
     int count = 0;
     // Areas grow from part to part, so this ends; of strokes that cross they need not.
-    auto it = around.find(part);
-    for (; it != around.end() && it->second >= 0 && count < int(cycles.size()); ++count)
-      it = around.find(cycles[it->second].part);
+    for (auto it = around.find(part); it != around.end() && count < int(cycles.size()); ++count)
+      it = around.find(it->second);
     return count;
   };
   std::vector<PlanarFace> faces;
-  for (int i = 0; i < int(cycles.size()); ++i) {
-    const Cycle& outer = cycles[i];
-    if (outer.area <= 0 || depth(outer.part) % 2 != 0) continue;
-    if (outer.area <= 2 * tolerance * perimeter(outer.polygon)) continue;
-    std::vector<int> holes;
-    for (int k = 0; k < int(cycles.size()); ++k) {
-      const Cycle& c = cycles[k];
-      if (c.area > 0) continue;
-      const auto it = around.find(c.part);
-      const bool inside = !walk_has_inside[c.walk] && it != around.end() && it->second == i;
-      if (inside || c.walk == outer.walk) holes.push_back(k);
-    }
-    if (!is_clean(cycles, i, holes)) continue;
-    PlanarFace face{plane.origin, plane.normal, outer.loop, {}};
-    for (const int k : holes) face.holes.push_back(cycles[k].loop);
-    faces.push_back(face);
+  for (const SurfacePiece& piece : pieces) {
+    const Cycle& outer = cycles[piece.cycles[0]];
+    if (depth(outer.part) % 2 != 0) continue;
+    if (outer.area <= 2 * tolerance * perimeter(outer.polygon) || !is_clean(piece.polygons))
+      continue;
+    faces.push_back({plane.origin, plane.normal, outer.loop, {}});
+    for (size_t k = 1; k < piece.cycles.size(); ++k)
+      faces.back().holes.push_back(cycles[piece.cycles[k]].loop);
   }
   return faces;
 }

@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "topology/solid/cell_index.h"
+
 namespace sketchsplat {
 namespace {
 
@@ -20,6 +22,7 @@ struct Patch {
   Surface surface;
   Layout layout;
   Cell cell;
+  CellIndex index;
   bool turned = false;  ///< the solid is on the side of the surface's normal
 };
 
@@ -91,7 +94,7 @@ int hits(const std::vector<Patch>& patches, const Vector3d& from, const Vector3d
   for (const Patch& p : patches) {
     const Crossings c = crossings(p.layout, from, to);
     for (int i = 0; i < c.count; ++i)
-      count += holds(p.cell, p.layout, p.layout.flat(Vector3d(from + c.t[i] * (to - from))));
+      count += p.index.holds(p.layout.flat(Vector3d(from + c.t[i] * (to - from))));
   }
   return count;
 }
@@ -122,7 +125,7 @@ Loop reversed(const Loop& loop) {
 }  // namespace
 
 bool assemble(const Completed& all, const std::vector<Cell>& cells, const ChosenCells& chosen,
-              Solid* solid, std::vector<int>* edge_of, std::string* why) {
+              Solid* solid, std::string* why) {
   const std::vector<SurfaceStrokes>& surfaces = all.surfaces;
   std::vector<Patch> patches;
   for (int i = 0; i < int(surfaces.size()); ++i) {
@@ -130,8 +133,9 @@ bool assemble(const Completed& all, const std::vector<Cell>& cells, const Chosen
     for (size_t c = 0; c < cells.size(); ++c)
       if (cells[c].surface == i && chosen.cell[c]) own.push_back(&cells[c]);
     if (own.empty()) continue;
+    const Layout layout = layout_of(surfaces[i]);
     for (const Cell& cell : merged(all.sketch, all.polylines, surfaces[i], i, own))
-      patches.push_back({surfaces[i].surface, layout_of(surfaces[i]), cell});
+      patches.push_back({surfaces[i].surface, layout, cell, CellIndex(cell, layout)});
   }
   std::vector<int> part;
   if (patches.empty() || !turn_alike(chosen.open, &patches, &part)) {
@@ -140,26 +144,13 @@ bool assemble(const Completed& all, const std::vector<Cell>& cells, const Chosen
   }
   turn_outwards(part, largest_extent(all.sketch), &patches);
 
-  std::vector<bool> keep(all.sketch.size());
-  for (const Patch& p : patches)
-    for (const HalfEdge& h : half_edges(p.cell)) keep[h.first] = true;
-  edge_of->assign(all.sketch.size(), -1);
   *solid = Solid();
-  for (int s = 0; s < all.sketch.size(); ++s)
-    if (keep[s]) {
-      (*edge_of)[s] = int(solid->inferred.size());
-      solid->inferred.push_back(all.origin[s] != EdgeOrigin::kSeen);
-    }
-  solid->edges = keep_strokes(all.sketch, keep);
-  std::map<int, int> surface_index;
+  solid->edges = all.sketch;
+  for (const EdgeOrigin origin : all.origin) solid->inferred.push_back(origin != EdgeOrigin::kSeen);
+  for (const SurfaceStrokes& s : surfaces) solid->surfaces.push_back(s.surface);
   for (const Patch& p : patches) {
-    const auto [it, first] = surface_index.emplace(p.cell.surface, int(solid->surfaces.size()));
-    if (first) solid->surfaces.push_back(p.surface);
-    SolidFace face{it->second, p.turned, {}};
-    for (const Loop& loop : p.cell.loops) {
-      face.loops.push_back(p.turned ? reversed(loop) : loop);
-      for (LoopStroke& s : face.loops.back()) s.stroke = (*edge_of)[s.stroke];
-    }
+    SolidFace face{p.cell.surface, p.turned, {}};
+    for (const Loop& loop : p.cell.loops) face.loops.push_back(p.turned ? reversed(loop) : loop);
     solid->faces.push_back(face);
   }
   return true;

@@ -11,12 +11,11 @@
 
 namespace sketchsplat {
 
-/// The boundary that a choice of cells forms: cells that touch on one surface become one face, its
-/// loops run counter-clockwise seen from outside, and only strokes that bound faces are kept.
-/// `edge_of`: per stroke of the sketch its index in the solid's edges, -1 if it is none. False,
-/// with a clause that says why, if the faces cannot be turned so that each edge is run once in
-/// either direction, or if nothing is chosen.
+/// The boundary that a choice of cells forms, over all surfaces and strokes (see keep_faces): cells
+/// that touch on one surface become one face, its loops run counter-clockwise seen from outside.
+/// False, with a clause that says why, if the faces cannot be turned so that each edge is run once
+/// in either direction, or if nothing is chosen.
 bool assemble(const Completed& all, const std::vector<Cell>& cells, const ChosenCells& chosen,
-              Solid* solid, std::vector<int>* edge_of, std::string* why);
+              Solid* solid, std::string* why);
 
 }  // namespace sketchsplat

@@ -18,6 +18,7 @@ constexpr int kBins = 64;
 CellIndex::CellIndex(const Cell& cell, const Layout& layout)
     : period_(layout.period()), again_(layout.periods().y()), bins_(kBins) {
   const FlatBox box = box_of(cell);
+  low_ = box.low.y(), high_ = low_ + box.size.y();
   first_ = period_ > 0 ? 0 : box.low.x();
   width_ = std::max((period_ > 0 ? period_ : box.size.x()) / kBins, 1e-300);
   for (const Matrix2Xd& polygon : cell.polygons)
@@ -48,7 +49,7 @@ void CellIndex::add(const Vector2d& a, const Vector2d& b) {
 }
 
 bool CellIndex::holds(const Vector2d& flat) const {
-  if (again_ == 0) return is_below_odd(flat);
+  if (again_ == 0) return flat.y() >= low_ && flat.y() <= high_ && is_below_odd(flat);
   for (int k = -1; k <= 1; ++k)
     if (is_below_odd(flat + Vector2d(0, k * again_))) return true;
   return false;

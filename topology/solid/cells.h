@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -28,24 +29,21 @@ struct Cell {
 std::vector<Cell> cells_of(const Sketch& sketch, const std::vector<Eigen::Matrix3Xd>& polylines,
                            const SurfaceStrokes& surface, int index);
 
-/// Around a cell in its layout; coordinates along which the surface closes say nothing.
+/// Of every stroke (first) of every surface the cells to its left, along it, and to its right; -1:
+/// none.
+using CellSides = std::map<std::pair<int, int>, std::pair<int, int>>;
+CellSides sides_of(const std::vector<Cell>& cells);
+
+/// Around a cell in its layout.
 struct FlatBox {
   Eigen::Vector2d low, size;
   Eigen::Vector2d at(double u, double v) const {
     return low + Eigen::Vector2d(u * size.x(), v * size.y());
   }
-  bool holds(const Eigen::Vector2d& p, const Eigen::Vector2d& periods) const {
-    const Eigen::Vector2d in = p - low;
-    return (periods.y() > 0 || (in.y() >= 0 && in.y() <= size.y())) &&
-           (periods.x() > 0 || (in.x() >= 0 && in.x() <= size.x()));
-  }
 };
 FlatBox box_of(const Cell& cell);
 
 inline Layout layout_of(const SurfaceStrokes& s) { return Layout(s.surface, s.around_tube); }
-
-/// Is a point of the layout in the cell? Coordinates may be off by periods.
-bool holds(const Cell& cell, const Layout& layout, const Eigen::Vector2d& flat);
 
 /// About `count` points spread evenly over a cell, on the surface and off its border; at least one
 /// unless it is too thin.

@@ -14,7 +14,7 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kMostWork = 1e7;  // nodes times entries of the matrix: some seconds
+constexpr double kMostWork = 1e7;         // nodes times entries of the matrix: some seconds
 constexpr size_t kMostEntries = 250'000;  // relaxations of more take many seconds
 
 // Columns are yes or no; rows are sums of some of them.
@@ -73,21 +73,6 @@ class Programme {
   std::vector<double> price_, low_, high_;  // of columns; bounds of rows
   std::vector<Eigen::Triplet<double>> entries_;
 };
-
-// Cells beside every stroke of every surface: to its left (of its direction) and to its right.
-using Sides = std::map<std::pair<int, int>, std::pair<int, int>>;
-
-Sides sides_of(const std::vector<Cell>& cells) {
-  Sides sides;
-  for (int c = 0; c < int(cells.size()); ++c)
-    for (const Loop& loop : cells[c].loops)
-      for (const LoopStroke& s : loop) {
-        auto& side =
-            sides.emplace(std::pair(s.stroke, cells[c].surface), std::pair(-1, -1)).first->second;
-        (s.forward ? side.first : side.second) = c;
-      }
-  return sides;
-}
 
 // A column that says whether one of two cells is chosen and the other is not.
 int border(int left, int right, Programme* programme) {

@@ -2,11 +2,18 @@
 #include "topology/solid/circle_rim.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
 
 namespace sketchsplat {
+
+bool coaxial(const CircleRim& a, const CircleRim& b, double tolerance) {
+  constexpr double kParallel = 0.999;  // cosine
+  return std::abs(a.axis.dot(b.axis)) > kParallel &&
+         a.axis.cross(b.centre - a.centre).norm() <= 2 * tolerance;
+}
 
 std::optional<CircleRim> circle_rim(const Sketch& sketch, int stroke, double tolerance) {
   switch (sketch.strokes[stroke].kind) {

@@ -14,6 +14,9 @@ struct CircleRim {
   double radius = 0;
 };
 
+/// Do they turn about one axis, to within twice the tolerance (world units)?
+bool coaxial(const CircleRim& a, const CircleRim& b, double tolerance);
+
 /// The circle of a circle, of an arc that is not straight, or of an ellipse that keeps to within
 /// the tolerance (world units) of one: its semi-axes differ by no more than twice that, and the
 /// lesser one is longer than four, lest any small ellipse be a circle. None of other strokes.

@@ -87,7 +87,7 @@ void extend_to_planes(double tolerance, double reach, Sketch* sketch) {
   const std::vector<PlaneStrokes> planes = find_planes(*sketch, polylines, tolerance);
   for (const LooseEnd& end : loose_ends(*sketch)) {
     if (sketch->strokes[end.stroke].kind != StrokeKind::kLine) continue;
-    const Eigen::Vector3d direction = tangent_in(*sketch, end.stroke, end.node);
+    const Eigen::Vector3d direction = tangent_out(*sketch, end.stroke, end.node);
     double nearest = reach;
     const Eigen::Vector3d place = sketch->nodes.col(end.node);
     for (const PlaneStrokes& p : planes) {

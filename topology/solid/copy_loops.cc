@@ -152,7 +152,7 @@ class Copier {
       const int node = s.forward ? seen_.strokes[s.stroke].begin : seen_.strokes[s.stroke].end;
       moved[node] = node_at(seen_.nodes.col(node) + shift);
       const double bend =
-          tangent_in(seen_, s.stroke, node).dot(tangent_in(seen_, before.stroke, node));
+          tangent_out(seen_, s.stroke, node).dot(tangent_out(seen_, before.stroke, node));
       connect(node, moved[node], bend < -0.996 ? EdgeOrigin::kSmooth : EdgeOrigin::kCopy);
     }
     for (const LoopStroke& s : loop.loop) {

@@ -19,7 +19,6 @@ class Scales {
     for (const SurfaceStrokes& s : surfaces) layouts_.push_back(layout_of(s));
     for (int c = 0; c < int(cells.size()); ++c) {
       of_surface_[cells[c].surface].push_back(c);
-      boxes_.push_back(box_of(cells[c]));
       index_.emplace_back(cells[c], layouts_[cells[c].surface]);
     }
   }
@@ -33,8 +32,7 @@ class Scales {
       for (int k = 0; k < at.count && at.t[k] < end; ++k) {
         const Eigen::Vector2d flat = layouts_[i].flat(Vector3d(from + at.t[k] * (to - from)));
         for (const int c : of_surface_[i])
-          if (boxes_[c].holds(flat, layouts_[i].periods()) && index_[c].holds(flat))
-            out.push_back(c);
+          if (index_[c].holds(flat)) out.push_back(c);
       }
     }
     std::sort(out.begin(), out.end());
@@ -46,7 +44,6 @@ class Scales {
   const std::vector<SurfaceStrokes>& surfaces_;
   std::vector<Layout> layouts_;
   std::vector<std::vector<int>> of_surface_;
-  std::vector<FlatBox> boxes_;
   std::vector<CellIndex> index_;
 };
 
@@ -99,6 +96,7 @@ int cameras_at_worst(const SolidEvidence& evidence, const std::vector<SurfaceStr
   const Scales scales(surfaces, cells);
   const Layout layout = layout_of(surfaces[cells[cell].surface]);
   const FlatBox box = box_of(cells[cell]);
+  const CellIndex index(cells[cell], layout);
   std::vector<Vector3d> cameras;
   for (const Sight& s : evidence.sights) cameras.push_back(s.from);
   const auto before = [](const Vector3d& a, const Vector3d& b) {
@@ -115,7 +113,7 @@ int cameras_at_worst(const SolidEvidence& evidence, const std::vector<SurfaceStr
     std::vector<Vector3d> ring;
     for (int k = 0; k < kAround; ++k) {
       const Eigen::Vector2d flat = box.at((k + 0.5) / kAround, (h + 0.5) / kHeights);
-      if (holds(cells[cell], layout, flat)) ring.push_back(layout.point(flat));
+      if (index.holds(flat)) ring.push_back(layout.point(flat));
     }
     if (ring.empty()) continue;
     int count = 0;

@@ -21,24 +21,14 @@
 namespace sketchsplat {
 namespace {
 
-// Is there a stroke on the surface that no face explains? What it does there nobody knows.
-bool holds_left(const Completed& all, const std::vector<bool>& left, const Surface& s) {
-  const auto same = [&](const Surface& t) {
-    return t.kind == s.kind && t.origin == s.origin && t.axis == s.axis && t.radius == s.radius &&
-           t.slope == s.slope && t.minor_radius == s.minor_radius && t.profile == s.profile;
-  };
-  for (const SurfaceStrokes& of : all.surfaces)
-    if (same(of.surface))
-      for (const int stroke : of.strokes)
-        if (stroke < int(left.size()) && left[stroke]) return true;
-  return false;
-}
-
-// Faces that leave no stroke open.
+// Faces on whose surfaces every stroke is explained: what another one does there nobody knows.
 Solid without_left(const Solid& solid, const Completed& all, const std::vector<bool>& left) {
   std::vector<bool> explained;
-  for (const SolidFace& face : solid.faces)
-    explained.push_back(!holds_left(all, left, solid.surfaces[face.surface]));
+  for (const SolidFace& face : solid.faces) {
+    const std::vector<int>& strokes = all.surfaces[face.surface].strokes;
+    explained.push_back(std::none_of(strokes.begin(), strokes.end(),
+                                     [&](int s) { return s < int(left.size()) && left[s]; }));
+  }
   return keep_faces(solid, explained);
 }
 
@@ -79,16 +69,15 @@ class Search {
     ChosenCells sure = best;
     sure.open.assign(all_.sketch.size(), true);
     Solid solid;
-    std::vector<int> edge_of;
     std::string why;
-    if (!assemble(all_, choice_.cells, sure, &solid, &edge_of, &why)) return;
+    if (!assemble(all_, choice_.cells, sure, &solid, &why)) return;
     out->faces = int(solid.faces.size());
     keep_common(best, choose_cells(choice_, {best}, options_.nodes), &sure.cell);
     for (size_t c = 0; each && c < sure.cell.size(); ++c)
       if (sure.cell[c] && borders_inferred(choice_.cells[c]))
         keep_common(best, best_without(int(c)), &sure.cell);
     for (const int c : unseen_tapers(best)) sure.cell[c] = false;
-    if (!assemble(all_, choice_.cells, sure, &solid, &edge_of, &why)) return;
+    if (!assemble(all_, choice_.cells, sure, &solid, &why)) return;
     solid = without_left(solid, all_, left_);
     if (solid.faces.empty()) return;
     out->as_seen = solid.edges;
@@ -166,8 +155,7 @@ class Search {
     out.rays = int(evidence_.rays.size());
     out.contradicted = contradicted(weighed_, best.cell);
     Solid solid;
-    std::vector<int> edge_of;
-    if (!assemble(all_, choice.cells, best, &solid, &edge_of, &out.why)) return;
+    if (!assemble(all_, choice.cells, best, &solid, &out.why)) return;
     out.faces = int(solid.faces.size());
     if (!is_hopeless(out))
       out.margin = choose_cells(choice, {best}, options_.nodes).price - best.price;
@@ -175,7 +163,8 @@ class Search {
     if (out.why.empty() && !unseen_tapers(best).empty())
       out.why = "too few cameras see all of a tapered face to tell it from a stepped one";
     if (!out.why.empty()) return;
-    out.solid = std::move(solid);
+    std::vector<int> edge_of;
+    out.solid = keep_faces(solid, std::vector<bool>(solid.faces.size(), true), &edge_of);
     note_edges(edge_of, &out);
   }
 

@@ -111,11 +111,8 @@ class Finder {
   }
 
   void add_cone(const Round& a, const Round& b) {
-    if (std::abs(a.axis.dot(b.axis)) < 0.999) return;
-    const Vector3d between = b.centre - a.centre;
-    const double along = between.dot(a.axis);
-    const bool coaxial = (between - a.axis * along).norm() <= 2 * tolerance_;
-    if (!coaxial || std::abs(along) <= 4 * tolerance_) return;
+    const double along = (b.centre - a.centre).dot(a.axis);
+    if (!coaxial(a, b, tolerance_) || std::abs(along) <= 4 * tolerance_) return;
     if (std::abs(a.radius - b.radius) <= 4 * tolerance_) return;
     Surface s;
     s.kind = SurfaceKind::kCone;

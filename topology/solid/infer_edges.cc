@@ -6,11 +6,13 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "sketches/curve/conic.h"
 #include "sketches/curve/curve.h"
+#include "topology/solid/circle_rim.h"
 #include "topology/solid/surface.h"
 
 namespace sketchsplat {
@@ -88,11 +90,17 @@ class Inference {
 
   // Do two strokes go on from one another there?
   bool is_smooth(int node) const {
+    const std::vector<Vector3d> away = away_from(node);
+    return away.size() == 2 && away[0].dot(away[1]) < 0 && away[0].cross(away[1]).norm() < kBend;
+  }
+
+  // Tangents of the strokes that are seen, out of a node.
+  std::vector<Vector3d> away_from(int node) const {
     std::vector<Vector3d> away;
     for (int s = 0; s < seen_; ++s)
       if (sketch_.strokes[s].begin == node || sketch_.strokes[s].end == node)
-        away.push_back(tangent_in(sketch_, s, node));
-    return away.size() == 2 && away[0].dot(away[1]) < 0 && away[0].cross(away[1]).norm() < kBend;
+        away.push_back(tangent_out(sketch_, s, node));
+    return away;
   }
 
   void add_meeting(int a, int b) {
@@ -137,12 +145,7 @@ class Inference {
     Vector3d a, b, normal;
   };
   void add_corner(int node, std::vector<Corner>* corners) const {
-    std::vector<Vector3d> away;
-    for (int s = 0; s < seen_; ++s) {
-      const Stroke& stroke = sketch_.strokes[s];
-      if (stroke.begin == node) away.push_back(tangent_in(sketch_, s, node));
-      if (stroke.end == node && stroke.begin != node) away.push_back(tangent_in(sketch_, s, node));
-    }
+    const std::vector<Vector3d> away = away_from(node);
     if (away.size() != 2) return;
     const Vector3d normal = away[0].cross(away[1]);
     if (normal.norm() > kBend) corners->push_back({node, away[0], away[1], normal.normalized()});
@@ -237,13 +240,11 @@ class Inference {
 
   // Is there another circle of its radius about its axis?
   bool has_twin(int stroke) const {
-    const ControlPoints a = control_points(sketch_, stroke);
-    const Vector3d axis = a.p[1].normalized();
+    const std::optional<CircleRim> own = circle_rim(sketch_, stroke, tolerance_);
     for (int s = 0; s < sketch_.size(); ++s) {
       if (s == stroke || sketch_.strokes[s].kind != StrokeKind::kCircle) continue;
-      const ControlPoints b = control_points(sketch_, s);
-      if (axis.cross(b.p[0] - a.p[0]).norm() <= 2 * tolerance_ &&
-          std::abs(a.p[1].norm() - b.p[1].norm()) <= 2 * tolerance_)
+      const std::optional<CircleRim> rim = circle_rim(sketch_, s, tolerance_);
+      if (coaxial(*own, *rim, tolerance_) && std::abs(own->radius - rim->radius) <= 2 * tolerance_)
         return true;
     }
     return false;
@@ -267,19 +268,12 @@ class Inference {
   const std::vector<SurfaceStrokes>& surfaces_;
   double tolerance_, slide_;
   std::set<std::pair<int, int>> joined_;
-  std::vector<std::vector<int>> nodes_;  // of every surface, ascending
+  std::vector<std::vector<int>> nodes_;        // of every surface, ascending
   std::map<std::pair<int, int>, bool> lines_;  // are they smooth?
   std::set<std::pair<int, int>> twins_;
 };
 
 }  // namespace
-
-Vector3d tangent_in(const Sketch& sketch, int stroke, int node) {
-  const bool begin = sketch.strokes[stroke].begin == node;
-  Vector3d position, derivative;
-  evaluate_stroke(sketch, stroke, begin ? 0 : 1, &position, &derivative);
-  return (begin ? derivative : -derivative).normalized();
-}
 
 std::vector<ImpliedStroke> implied_strokes(const Sketch& seen, const Sketch& completed,
                                            const std::vector<SurfaceStrokes>& surfaces,

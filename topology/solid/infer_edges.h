@@ -19,9 +19,6 @@ struct ImpliedStroke {
   bool twin = false;                     ///< between two corners that both lack it
 };
 
-/// Unit tangent of an open stroke in one of its two nodes, into the stroke.
-Eigen::Vector3d tangent_in(const Sketch& sketch, int stroke, int node);
-
 /// Rulings of cylinders and cones, and lines in which two planes meet, between neighbouring nodes
 /// along them that at most two strokes of `seen` meet in: where a plane runs into a round smoothly,
 /// and where an edge is too faint. Lines

@@ -5,7 +5,8 @@
 #include <vector>
 
 namespace sketchsplat {
-Solid keep_faces(const Solid& solid, const std::vector<bool>& keep) {
+
+Solid keep_faces(const Solid& solid, const std::vector<bool>& keep, std::vector<int>* edge_of) {
   Solid out;
   std::vector<bool> bounds(solid.edges.size());
   std::map<int, int> surface_index;
@@ -28,6 +29,7 @@ Solid keep_faces(const Solid& solid, const std::vector<bool>& keep) {
   for (SolidFace& face : out.faces)
     for (Loop& loop : face.loops)
       for (LoopStroke& s : loop) s.stroke = index[s.stroke];
+  if (edge_of) *edge_of = index;
   return out;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -78,20 +77,10 @@ double face_price(const Surface& surface, const SolidOptions& options) {
 std::vector<std::pair<std::pair<int, int>, double>> merges(const Completed& all,
                                                            const std::vector<Cell>& cells,
                                                            const SolidOptions& options) {
-  std::map<std::pair<int, int>, std::pair<int, int>> sides;  // of a stroke on a surface
-  for (int c = 0; c < int(cells.size()); ++c)
-    for (const Loop& loop : cells[c].loops)
-      for (const LoopStroke& s : loop) {
-        if (all.origin[s.stroke] == EdgeOrigin::kSeen ||
-            !is_closed(all.sketch.strokes[s.stroke].kind))
-          continue;
-        auto& side =
-            sides.emplace(std::pair(s.stroke, cells[c].surface), std::pair(-1, -1)).first->second;
-        (s.forward ? side.first : side.second) = c;
-      }
   std::vector<std::pair<std::pair<int, int>, double>> out;
-  for (const auto& [where, pair] : sides)
-    if (pair.first >= 0 && pair.second >= 0)
+  for (const auto& [where, pair] : sides_of(cells))
+    if (pair.first >= 0 && pair.second >= 0 && all.origin[where.first] != EdgeOrigin::kSeen &&
+        is_closed(all.sketch.strokes[where.first].kind))
       out.push_back({pair, face_price(all.surfaces[where.second].surface, options)});
   return out;
 }

@@ -98,12 +98,6 @@ class Finder {
     contours_.remove(contours_.touching({s, box.center(), 0.75 * box.diagonal().norm(), between}));
   }
 
-  bool coaxial(const CircleRim& a, const CircleRim& b) const {
-    const Vector3d between = b.centre - a.centre;
-    return std::abs(a.axis.dot(b.axis)) > 0.999 &&
-           (between - a.axis * between.dot(a.axis)).norm() <= 2 * tolerance_;
-  }
-
   // The sphere nearest to two rims, in the least squares of |p|^2 - 2 c.p + (|c|^2 - r^2).
   Surface sphere_through(size_t i, size_t k) const {
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
@@ -126,7 +120,7 @@ class Finder {
   void propose_sphere(size_t i, size_t k) {
     const CircleRim &a = rims_[i], &b = rims_[k];
     const double rise = (b.centre - a.centre).dot(a.axis);
-    if (!coaxial(a, b) || std::abs(rise) <= 4 * tolerance_) return;
+    if (!coaxial(a, b, tolerance_) || std::abs(rise) <= 4 * tolerance_) return;
     const Surface sphere = sphere_through(i, k);
     const double half = std::hypot(rise, a.radius - b.radius) / 2,
                  bulge = sphere.radius -
@@ -144,7 +138,7 @@ class Finder {
   void propose_rings(const CircleRim& a, const CircleRim& b) {
     const double half = std::hypot((b.centre - a.centre).norm(), b.radius - a.radius) / 2;
     const double flattest = 2 * std::atan(kLeastBulge * tolerance_ / half);
-    if (!coaxial(a, b) || !(flattest < 1)) return;
+    if (!coaxial(a, b, tolerance_) || !(flattest < 1)) return;
     for (const double side : {1.0, -1.0}) propose(rings(a, b), side * flattest, side * 2.5);
   }
 
