@@ -41,8 +41,8 @@ void write_tables(const std::string& folder, const SolidOutputOptions& options, 
     scale = {length_unit_names()[int(options.scale.unit)], options.scale.units_per_world,
              options.scale.sigma_relative};
   out->tables = solid_tables(*out->search.solid, areas, options.sigma, scale);
-  write_text(folder + "/surfaces.csv", surfaces_csv(*out->tables));
-  write_text(folder + "/dimensions.csv", dimensions_csv(*out->tables));
+  write_text(folder + "/surfaces.csv", out->tables->surfaces_csv);
+  write_text(folder + "/dimensions.csv", out->tables->dimensions_csv);
   write_atomically(folder + "/solid.json", [&](std::ostream& file) {
     write_solid_json(file, *out->search.solid, options.extra);
   });
@@ -103,8 +103,8 @@ std::string solid_json(const SolidOutcome& outcome) {
   }
   if (outcome.tables) {
     json["unit"] = outcome.tables->unit;
-    json["surfaces"] = parse_json<Json>(surfaces_json(*outcome.tables));
-    json["dimensions"] = parse_json<Json>(dimensions_json(*outcome.tables));
+    json["surfaces"] = parse_json<Json>(outcome.tables->surfaces_json);
+    json["dimensions"] = parse_json<Json>(outcome.tables->dimensions_json);
   }
   return json_text(json);
 }

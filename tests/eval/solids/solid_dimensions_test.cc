@@ -44,15 +44,19 @@ std::vector<double> values_of(const Solid& solid, SolidDimensionKind kind) {
   return out;
 }
 
-// A prism over a triangle with right angle and equal legs of length 1, 2 high.
+// Corners of a prism over a triangle with right angle and equal legs.
+std::vector<int> corners(double leg, double height, SolidMaker* m) {
+  std::vector<int> n;
+  for (const double z : {0.0, height})
+    for (const Vector3d& p : {Vector3d(0, 0, z), Vector3d(leg, 0, z), Vector3d(0, leg, z)})
+      n.push_back(m->node(p));
+  return n;
+}
+
+// A prism with legs of length 1, 2 high.
 Solid wedge() {
   SolidMaker m;
-  int n[6];
-  for (const int k : {0, 1}) {
-    n[3 * k] = m.node({0, 0, 2.0 * k});
-    n[3 * k + 1] = m.node({1, 0, 2.0 * k});
-    n[3 * k + 2] = m.node({0, 1, 2.0 * k});
-  }
+  const std::vector<int> n = corners(1, 2, &m);
   m.face(SolidMaker::plane({0, 0, 0}, {0, 0, -1}), false, {m.polygon({n[0], n[2], n[1]})});
   m.face(SolidMaker::plane({0, 0, 2}, {0, 0, 1}), false, {m.polygon({n[3], n[4], n[5]})});
   m.face(SolidMaker::plane({0, 0, 0}, {0, -1, 0}), false, {m.polygon({n[0], n[1], n[4], n[3]})});
@@ -82,12 +86,7 @@ TEST(SolidDimensions, AreThoseOfADrawing) {
 
 TEST(SolidDimensions, RoundsOfLessThanHalfATurnHaveARadius) {
   SolidMaker m;  // a quarter of a disk of radius 2, 1 high
-  int n[6];
-  for (const int k : {0, 1}) {
-    n[3 * k] = m.node({0, 0, 1.0 * k});
-    n[3 * k + 1] = m.node({2, 0, 1.0 * k});
-    n[3 * k + 2] = m.node({0, 2, 1.0 * k});
-  }
+  const std::vector<int> n = corners(2, 1, &m);
   const double at = std::sqrt(2.0);
   const int low = m.arc(n[1], n[2], {at, at, 0}), high = m.arc(n[4], n[5], {at, at, 1});
   const int right = m.line(n[1], n[4]), left = m.line(n[2], n[5]);
@@ -200,38 +199,40 @@ TEST(SolidDimensions, WhatNoCurveTellsOfIsNotKnown) {
 TEST(SolidTables, AreInTheUnitAndHoldWhatScaleDoesNotKnow) {
   Solid plate = known(plate_with_hole(0.5), 1e-3);
   for (int s = 0; s < plate.edges.size(); ++s) plate.edges.evidence[s].views = {s, 40};
-  const std::vector<double> areas(plate.faces.size(), 2);
-  const SolidTables exact = solid_tables(plate, areas, {}, {"mm", 100, 0});
-  ASSERT_EQ(exact.surfaces.size(), 7u);
-  const SurfaceRow& hole = exact.surfaces[6];
-  EXPECT_EQ(hole.face, "cylinder_6");
-  EXPECT_NEAR(hole.radius, 25, 1e-9);
-  EXPECT_NEAR(hole.area, 2e4, 1e-9);
-  EXPECT_NEAR((hole.origin - Vector3d(60, 50, 25)).norm(), 0, 1e-9) << "the middle of its rims";
-  EXPECT_EQ(hole.views, 3) << "each counts once";
-  EXPECT_GT(hole.radius_sigma, 0.01);
-  EXPECT_LT(hole.radius_sigma, 0.1);
-  EXPECT_GT(hole.position_sigma, 0.01);
-  EXPECT_TRUE(std::isnan(exact.surfaces[0].radius));
-  EXPECT_NEAR((exact.surfaces[0].axis + Vector3d::UnitZ()).norm(), 0, 1e-12) << "looks out";
-  const SolidTables vague = solid_tables(plate, areas, {}, {"mm", 100, 0.01});
-  EXPECT_NEAR(vague.surfaces[6].radius_sigma, std::hypot(hole.radius_sigma, 0.25), 1e-9);
+  const auto surfaces = [&](double sigma_of_scale) {
+    return nlohmann::json::parse(
+        solid_tables(plate, std::vector<double>(7, 2), {}, {"mm", 100, sigma_of_scale})
+            .surfaces_json);
+  };
+  const nlohmann::json exact = surfaces(0), hole = exact[6];
+  ASSERT_EQ(exact.size(), 7u);
+  EXPECT_EQ(hole["face"], "cylinder_6");
+  EXPECT_EQ(hole["radius"], 25);
+  EXPECT_EQ(hole["area"], 2e4);
+  EXPECT_EQ(hole["origin"], nlohmann::json({60.0, 50.0, 25.0})) << "the middle of its rims";
+  EXPECT_EQ(hole["views"], 3) << "each counts once";
+  EXPECT_GT(hole["radius_sigma"], 0.01);
+  EXPECT_LT(hole["radius_sigma"], 0.1);
+  EXPECT_GT(hole["position_sigma"], 0.01);
+  EXPECT_FALSE(exact[0].contains("radius"));
+  EXPECT_EQ(exact[0]["axis"][2], -1) << "looks out";
+  EXPECT_NEAR(double(surfaces(0.01)[6]["radius_sigma"]),
+              std::hypot(double(hole["radius_sigma"]), 0.25), 1e-6);
 }
 
 TEST(SolidTables, SayTheSameAsCsvAndAsJson) {
-  const Solid plate = known(plate_with_hole(0.5), 1e-3);
-  const SolidTables tables = solid_tables(plate, {1, 2, 3, 4, 5, 6, 7}, {}, {});
-  std::istringstream lines(surfaces_csv(tables));
+  const SolidTables tables =
+      solid_tables(known(plate_with_hole(0.5), 1e-3), {1, 2, 3, 4, 5, 6, 7}, {}, {});
+  std::istringstream lines(tables.surfaces_csv);
   std::string head, first;
   std::getline(lines, head), std::getline(lines, first);
   EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(first.begin(), first.end(), ','));
   EXPECT_THAT(first, HasSubstr("plane_0,0,plane,world,1,,,,,,,0,0,-1,"));
-  EXPECT_THAT(dimensions_csv(tables), HasSubstr("\naxis to plane,0.6,"));
-  const auto rows = nlohmann::json::parse(dimensions_json(tables));
+  EXPECT_THAT(tables.dimensions_csv, HasSubstr("\naxis to plane,0.6,"));
+  const auto rows = nlohmann::json::parse(tables.dimensions_json);
   EXPECT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows[0]["faces"][0], "cylinder_6");
   EXPECT_EQ(rows[0]["value"], 0.5);
-  EXPECT_EQ(nlohmann::json::parse(surfaces_json(tables))[6]["radius"], 0.25);
 }
 
 }  // namespace
