@@ -136,23 +136,6 @@ TEST(BrepFile, NumbersFacesAsTheSolidDoes) {
   EXPECT_THAT(read(file_name()), HasSubstr("ADVANCED_FACE('sphere_3'"));
 }
 
-TEST(BrepFile, OfAnOpenShellHoldsItsFacesAndNoSolid) {
-  Solid shell = plate_with_hole(0.2);
-  shell.faces.erase(shell.faces.begin());
-  StepSolidOptions options;
-  options.open = true;
-  ASSERT_TRUE(write_solid_step(shell, file_name(), options).valid);
-  const Reread file = reread(file_name());
-  EXPECT_EQ(file.solids, 0);
-  EXPECT_TRUE(file.valid);
-  EXPECT_THAT(file.faces,
-              ::testing::ElementsAre(std::pair(GeomAbs_Plane, 6), std::pair(GeomAbs_Cylinder, 1)));
-  shell.faces.erase(shell.faces.begin(), shell.faces.begin() + 5);  // the hole alone is left
-  shell.edges = keep_strokes(shell.edges, {true, true, false, false, false, false, false, false,
-                                           false, false, false, false, false, false});
-  ASSERT_TRUE(write_solid_step(shell, file_name(), options).valid);
-}
-
 TEST(MeshSolid, HasTheAreasOfTheFacesAndLooksOut) {
   const Solid solid = plate_with_hole(0.5);
   const std::vector<FaceMesh> mesh = mesh_solid(solid, 1e-3);

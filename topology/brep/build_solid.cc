@@ -4,7 +4,6 @@
 #include <BRep_Builder.hxx>
 #include <ShapeFix.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 #include <algorithm>
@@ -39,8 +38,8 @@ void check_loop(const Sketch& sketch, const Loop& loop) {
   if (loop.empty()) throw Refused("a loop of it is empty");
 }
 
-// Every stroke bounds two faces, run in opposite directions; of open shells, perhaps one.
-void check_uses(const Solid& solid, bool open) {
+// Every stroke bounds two faces, run in opposite directions.
+void check_uses(const Solid& solid) {
   std::vector<int> forward(solid.edges.size()), backward(solid.edges.size());
   for (const SolidFace& face : solid.faces)
     for (const Loop& loop : face.loops)
@@ -49,7 +48,6 @@ void check_uses(const Solid& solid, bool open) {
     const std::string edge =
         "edge " + std::to_string(i) + ", " + (kind_name(solid.edges.strokes[i].kind)) + ": ";
     const int uses = forward[i] + backward[i];
-    if (open && uses == 1) continue;
     if (uses != 2)
       throw Refused(edge + "it bounds " + std::to_string(uses) + (uses == 1 ? " face" : " faces") +
                     ", not two");
@@ -57,7 +55,7 @@ void check_uses(const Solid& solid, bool open) {
   }
 }
 
-void check_indices(const Solid& solid, bool open) {
+void check_indices(const Solid& solid) {
   if (solid.faces.empty()) throw Refused("it has no faces");
   for (size_t f = 0; f < solid.faces.size(); ++f) {
     const SolidFace& face = solid.faces[f];
@@ -69,7 +67,7 @@ void check_indices(const Solid& solid, bool open) {
       throw Refused(of_face(f, solid.surfaces[face.surface].kind) + why.what());
     }
   }
-  check_uses(solid, open);
+  check_uses(solid);
 }
 
 // Faces that share strokes, in sets.
@@ -94,28 +92,19 @@ std::vector<std::vector<int>> connected(const Solid& solid) {
   return out;
 }
 
-// The faces as shells, in the solid that they bound or, if they are open, as they are.
-TopoDS_Shape assembled(const Solid& solid, const std::vector<TopoDS_Face>& faces, bool open) {
+// The faces as shells of a solid.
+TopoDS_Solid assembled(const Solid& solid, const std::vector<TopoDS_Face>& faces) {
   const BRep_Builder builder;
-  const std::vector<std::vector<int>> sets = connected(solid);
-  TopoDS_Compound loose;
   TopoDS_Solid whole;
-  if (open)
-    builder.MakeCompound(loose);
-  else
-    builder.MakeSolid(whole);
-  TopoDS_Shell shell;
-  for (const std::vector<int>& members : sets) {
+  builder.MakeSolid(whole);
+  for (const std::vector<int>& members : connected(solid)) {
+    TopoDS_Shell shell;
     builder.MakeShell(shell);
     for (const int f : members) builder.Add(shell, faces[f]);
-    shell.Closed(!open);
-    if (open)
-      builder.Add(loose, shell);
-    else
-      builder.Add(whole, shell);
+    shell.Closed(true);
+    builder.Add(whole, shell);
   }
-  if (!open) return whole;
-  return sets.size() == 1 ? TopoDS_Shape(shell) : TopoDS_Shape(loose);
+  return whole;
 }
 
 // Of the box about the edges and the surfaces that have none.
@@ -132,14 +121,14 @@ double extent_of(const Solid& solid) {
 
 }  // namespace
 
-BuiltSolid build_solid(const Solid& given, bool open) {
+BuiltSolid build_solid(const Solid& given) {
   BuiltSolid built;
   built.extent = extent_of(given);
   if (!std::isfinite(built.extent) || !(built.extent > 0)) throw Refused("it has no extent");
   built.scale = std::exp2(7 - std::ceil(std::log2(built.extent)));
   built.extent *= built.scale;
   const Solid solid = scaled(given, built.scale);
-  check_indices(solid, open);
+  check_indices(solid);
   const std::vector<TopoDS_Edge> edges = build_edges(solid, built.extent * kNear);
   // Poles and ends of seams are where curves end, up to what these lie beside their surfaces.
   const double near = std::clamp(4 * solid.gap, kNear * built.extent, kMostNear * built.extent);
@@ -152,7 +141,7 @@ BuiltSolid build_solid(const Solid& given, bool open) {
     }
   }
   for (TopoDS_Face& face : built.faces) face = TopoDS::Face(context->Apply(face));
-  built.shape = assembled(solid, built.faces, open);
+  built.shape = assembled(solid, built.faces);
   ShapeFix::SameParameter(built.shape, /*enforce=*/false);  // tolerances, by curves on surfaces
   return built;
 }

@@ -14,13 +14,12 @@ struct BuiltSolid {
   /// some hundred units. A power of two, which leaves all digits as they are.
   double scale = 1;
   double extent = 0;               ///< longest side of its box, larger too
-  TopoDS_Shape shape;              ///< a solid; of open shells, a shell or a compound of them
+  TopoDS_Shape shape;              ///< a solid
   std::vector<TopoDS_Face> faces;  ///< those of Solid::faces
 };
 /// The exact boundary representation: edges shared by their two faces, one shell for each set of
 /// connected faces. Not checked yet. Throws Refused if it has no extent, a stroke is not run once
-/// in either direction, a loop is not closed, or a face cannot be. If it is `open`, strokes may
-/// bound one face.
-BuiltSolid build_solid(const Solid& solid, bool open = false);
+/// in either direction, a loop is not closed, or a face cannot be.
+BuiltSolid build_solid(const Solid& solid);
 
 }  // namespace sketchsplat::brep

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "topology/brep/check.h"
 
-#include <BRepBndLib.hxx>
 #include <BRepCheck.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepCheck_ListIteratorOfListOfStatus.hxx>
@@ -9,7 +8,6 @@
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
-#include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -77,8 +75,7 @@ std::string orient(BuiltSolid* built) {
   return "";
 }
 
-std::string why_not(const Solid& solid, const SolidCheck& check, const BuiltSolid& built,
-                    bool open) {
+std::string why_not(const Solid& solid, const SolidCheck& check, const BuiltSolid& built) {
   if (!(check.tolerance <= kMostTolerance * built.extent)) {
     std::ostringstream text;
     text.precision(2);
@@ -88,9 +85,9 @@ std::string why_not(const Solid& solid, const SolidCheck& check, const BuiltSoli
   }
   const std::string fault = brep::fault_of(built.shape);
   if (!fault.empty()) return fault;
-  for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More() && !open; it.Next())
+  for (TopExp_Explorer it(built.shape, TopAbs_SHELL); it.More(); it.Next())
     if (!BRep_Tool::IsClosed(it.Current())) return "its faces do not close";
-  if (!open && !(check.volume > 1e-9 * std::pow(built.extent, 3))) return "it has no volume";
+  if (!(check.volume > 1e-9 * std::pow(built.extent, 3))) return "it has no volume";
   return self_intersection(solid, built, check.tolerance);
 }
 
@@ -129,13 +126,13 @@ double tolerance_of(const TopoDS_Shape& shape) {
   return most;
 }
 
-SolidCheck check_solid(const Solid& solid, bool open, BuiltSolid* built) {
+SolidCheck check_solid(const Solid& solid, BuiltSolid* built) {
   SolidCheck check;
-  if (!open) check.why = orient(built);
+  check.why = orient(built);
   check.tolerance = tolerance_of(built->shape);
-  if (!open) check.volume = volume_of(built->shape);
+  check.volume = volume_of(built->shape);
   check.area = area_of(built->shape);
-  if (check.why.empty()) check.why = why_not(solid, check, *built, open);
+  if (check.why.empty()) check.why = why_not(solid, check, *built);
   check.valid = check.why.empty();
   check.volume /= std::pow(built->scale, 3);
   check.area /= std::pow(built->scale, 2);

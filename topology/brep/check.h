@@ -10,8 +10,7 @@
 namespace sketchsplat::brep {
 
 /// Turns the solid inside out if need be, and measures and checks it, in units of the solid.
-/// `open`: shells that need not close, without a volume, and as they are turned.
-SolidCheck check_solid(const Solid& solid, bool open, BuiltSolid* built);
+SolidCheck check_solid(const Solid& solid, BuiltSolid* built);
 
 /// What BRepCheck_Analyzer finds first, as a clause; empty if the shape is valid.
 std::string fault_of(const TopoDS_Shape& shape);

@@ -31,7 +31,7 @@ FaceMesh mesh_of(const TopoDS_Face& face, double deflection, double scale) {
 std::vector<FaceMesh> mesh_solid(const Solid& solid, double deflection) {
   try {
     return brep::with_refusals([&] {
-      const brep::BuiltSolid built = brep::build_solid(solid, /*open=*/true);
+      const brep::BuiltSolid built = brep::build_solid(solid);
       brep::mesh(built.shape, deflection * built.extent);
       std::vector<FaceMesh> out;
       for (const TopoDS_Face& face : built.faces)

@@ -16,7 +16,7 @@ struct FaceMesh {
   double area = 0;                            ///< of the exact face
 };
 
-/// The faces of a solid, or of open shells, in their order; chords stay within `deflection` (of the
+/// The faces of a solid in their order; chords stay within `deflection` (of the
 /// extent) of the faces. Empty if it cannot be built: see write_solid_step.
 std::vector<FaceMesh> mesh_solid(const Solid& solid, double deflection);
 

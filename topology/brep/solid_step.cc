@@ -29,8 +29,8 @@ SolidCheck write_solid_step(const Solid& solid, const std::string& path,
                             const StepSolidOptions& options) {
   try {
     return brep::with_refusals([&] {
-      brep::BuiltSolid built = brep::build_solid(solid, options.open);
-      const SolidCheck check = brep::check_solid(solid, options.open, &built);
+      brep::BuiltSolid built = brep::build_solid(solid);
+      const SolidCheck check = brep::check_solid(solid, &built);
       if (check.valid && !path.empty()) write_scaled(built, path, options);
       return check;
     });

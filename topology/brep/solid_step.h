@@ -21,7 +21,6 @@ struct StepSolidOptions {
   std::string name = "solid";                 ///< of the product, UTF-8
   double scale = 1.0;                         ///< units per world unit, > 0
   LengthUnit unit = LengthUnit::kMillimetre;  ///< of the numbers in the file
-  bool open = false;                          ///< shells that need not close, not a solid
 };
 
 /// Builds the exact boundary representation of a solid and checks it: closed, of one piece but for
@@ -29,9 +28,8 @@ struct StepSolidOptions {
 /// run through each other, tolerances below 1e-4 of the extent. A solid whose faces all look
 /// inwards is turned. Only if it is valid, `path` gets an AP214 file with one MANIFOLD_SOLID_BREP
 /// (BREP_WITH_VOIDS), its faces named by index and coloured by their surfaces, whole or not at all;
-/// the same bytes for the same solid. An empty path: nothing is written. Open shells are checked
-/// alike but for what closes, and become a SHELL_BASED_SURFACE_MODEL each. Throws OutputError if
-/// the file cannot be written.
+/// the same bytes for the same solid. An empty path: nothing is written. Throws OutputError if the
+/// file cannot be written.
 SolidCheck write_solid_step(const Solid& solid, const std::string& path,
                             const StepSolidOptions& options = {});
 
