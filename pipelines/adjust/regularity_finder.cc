@@ -11,7 +11,6 @@ namespace sketchsplat {
 
 using Eigen::Vector3d;
 using Candidate = RegularityCandidate;
-using Trial = RelationTrial;
 
 bool RegularityFinder::is_conic(int i) const {
   const StrokeKind kind = sketch().strokes[i].kind;
@@ -41,6 +40,20 @@ bool RegularityFinder::holds_all(const std::set<int>& held, int i, bool inner) c
 Vector3d RegularityFinder::place_of(int point) const {
   const int nodes = int(sketch().nodes.cols());
   return point < nodes ? sketch().nodes.col(point) : sketch().handles.col(point - nodes);
+}
+
+// Takes a relation if it pays. Does it hold, taken or known already?
+bool RegularityFinder::share(const Relation& relation, double range, double naming) {
+  std::vector<Relation> one = {relation};
+  const RelationTrial trial = weigher_.weigh(&one, range, naming);
+  if (trial.pays()) weigher_.take(one, trial, true);
+  return trial.pays() || !trial.news;
+}
+
+// Takes a relation that defines a quantity, which costs nothing.
+void RegularityFinder::define(const Relation& relation, double range) {
+  std::vector<Relation> one = {relation};
+  weigher_.take(one, weigher_.weigh(&one, range, 0), false);
 }
 
 // Remembers who keeps to a quantity.
@@ -91,14 +104,10 @@ void RegularityFinder::find_directions() {
       const double here = std::abs(weigher_.shared(d.shared).value.dot(c.value));
       if (here > cosine) cosine = here, nearest = &d;
     }
-    std::vector<Relation> one = {c.relation};
     if (nearest && std::acos(std::min(1.0, cosine)) < kGate * (c.sigma + nearest->sigma)) {
-      const Vector3d& along = weigher_.shared(nearest->shared).value;
-      one[0].shared = nearest->shared;
-      one[0].sign = along.dot(c.value) < 0 ? -1 : 1;
-      const Trial trial = weigher_.weigh(&one, c.range, std::log(double(directions_.size())));
-      if (trial.pays()) weigher_.take(one, trial, true);
-      if (trial.pays() || !trial.news) {
+      c.relation.shared = nearest->shared;
+      c.relation.sign = weigher_.shared(nearest->shared).value.dot(c.value) < 0 ? -1 : 1;
+      if (share(c.relation, c.range, std::log(double(directions_.size())))) {
         nearest->strokes.push_back(c.relation.stroke);
         nearest->useful = true;
         continue;
@@ -108,9 +117,9 @@ void RegularityFinder::find_directions() {
     d.shared = weigher_.add_shared({SharedKind::kDirection, -1, c.value}, 1);
     d.sigma = c.sigma;
     d.strokes = {c.relation.stroke};
-    one[0].shared = d.shared;
-    one[0].sign = 1;
-    weigher_.take(one, weigher_.weigh(&one, c.range, 0), false);
+    c.relation.shared = d.shared;
+    c.relation.sign = 1;
+    define(c.relation, c.range);
     directions_.push_back(d);
   }
 }
@@ -134,10 +143,8 @@ void RegularityFinder::find_right_angles() {
   for (const auto& [a, b] : pairs) {
     const Direction &u = directions_[a], &v = directions_[b];
     if (cosine(u, v) > kGate * (u.sigma + v.sigma)) continue;
-    std::vector<Relation> one = {right_angle(u, v)};
-    const Trial trial = weigher_.weigh(&one, one[0].scale, std::log(double(pairs.size())));
-    if (trial.pays()) weigher_.take(one, trial, true);
-    if (trial.pays() || !trial.news) right.emplace_back(a, b);
+    const Relation r = right_angle(u, v);
+    if (share(r, r.scale, std::log(double(pairs.size())))) right.emplace_back(a, b);
   }
   // The direction of one stroke alone may complete a frame.
   for (Direction& d : directions_) {
@@ -147,7 +154,8 @@ void RegularityFinder::find_right_angles() {
       if (cosine(u, d) > kGate * (u.sigma + d.sigma)) continue;
       if (cosine(v, d) > kGate * (v.sigma + d.sigma)) continue;
       std::vector<Relation> two = {right_angle(u, d), right_angle(v, d)};
-      const Trial trial = weigher_.weigh(&two, two[0].scale, std::log(double(right.size())));
+      const RelationTrial trial =
+          weigher_.weigh(&two, two[0].scale, std::log(double(right.size())));
       if (!trial.pays()) continue;
       weigher_.take(two, trial, true);
       d.useful = true;
@@ -173,17 +181,13 @@ void RegularityFinder::group(std::vector<Candidate> candidates, const SharedQuan
     SharedQuantity quantity = blank;
     quantity.value = candidates[a].value;
     const int shared = weigher_.add_shared(quantity, weigher_.extent());
-    std::vector<Relation> one = {candidates[a].relation};
-    one[0].shared = shared;
-    weigher_.take(one, weigher_.weigh(&one, candidates[a].range, 0), false);
-    hold(shared, one[0]);
+    candidates[a].relation.shared = shared;
+    define(candidates[a].relation, candidates[a].range);
+    hold(shared, candidates[a].relation);
     for (size_t b : near) {
-      one = {candidates[b].relation};
-      one[0].shared = shared;
-      const Trial trial = weigher_.weigh(&one, candidates[b].range, naming);
-      if (trial.pays()) weigher_.take(one, trial, true);
-      taken[b] = trial.pays() || !trial.news;
-      if (taken[b]) hold(shared, one[0]);
+      candidates[b].relation.shared = shared;
+      taken[b] = share(candidates[b].relation, candidates[b].range, naming);
+      if (taken[b]) hold(shared, candidates[b].relation);
     }
   }
 }

@@ -57,6 +57,8 @@ class RegularityFinder {
   void find_tangents();
   RegularityCandidate along(int stroke);
   void group(std::vector<RegularityCandidate> candidates, const SharedQuantity& blank);
+  bool share(const Relation& relation, double range, double naming);
+  void define(const Relation& relation, double range);
   void hold(int shared, const Relation& relation);
   bool is_conic(int stroke) const;
   bool holds_all(const std::set<int>& held, int stroke, bool inner) const;

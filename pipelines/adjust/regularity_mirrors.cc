@@ -91,12 +91,8 @@ void RegularityFinder::find_mirrors() {
     weigher_.take(some, trial, true);
     mirrors_.insert(shared);
     for (const Relation& r : some) hold(shared, r);
-    for (size_t i = first; i < mirror.pairs.size(); ++i) {
-      std::vector<Relation> one = {mirror.pairs[i]};
-      const RelationTrial more = weigher_.weigh(&one, range, naming);
-      if (more.pays()) weigher_.take(one, more, true);
-      if (more.pays() || !more.news) hold(shared, one[0]);
-    }
+    for (size_t i = first; i < mirror.pairs.size(); ++i)
+      if (share(mirror.pairs[i], range, naming)) hold(shared, mirror.pairs[i]);
   }
 }
 
@@ -105,11 +101,9 @@ void RegularityFinder::find_tangents() {
   for (Relation& r : tangent_relations(sketch(), weigher_.options().tangent_angle)) {
     r.scale = std::min(stroke_length(sketch(), r.stroke) / 2, stroke_length(sketch(), r.partner)) /
               weigher_.unit();
-    std::vector<Relation> one = {r};
     // It is expected: that it agrees is no chance, however vague it is.
-    const RelationTrial trial = weigher_.weigh(&one, r.scale, -2 * (price + kTangentLogOdds));
-    if (trial.pays()) weigher_.take(one, trial, true);
-    if (trial.pays() || !trial.news) tangents_.push_back({r.stroke, r.partner});
+    if (share(r, r.scale, -2 * (price + kTangentLogOdds)))
+      tangents_.push_back({r.stroke, r.partner});
   }
 }
 

@@ -8,18 +8,6 @@
 #include "pipelines/survey/round_judge.h"
 
 namespace sketchsplat {
-namespace {
-
-std::vector<char> rounds_among(const Sketch& sketch, const EdgeWorld& world,
-                               const RoundModel& model) {
-  const Observation wide = observe_rounds(sketch, world, 0);
-  const RoundJudge judge(world, wide, model);
-  std::vector<char> out;
-  for (int s = 0; s < sketch.size(); ++s) out.push_back(judge.nats(s, nullptr) > 0);
-  return out;
-}
-
-}  // namespace
 
 Refit refit_by(const StrokeFit& fit, const MethodRun& run) {
   return [fit, run](Posed* posed) {
@@ -28,7 +16,9 @@ Refit refit_by(const StrokeFit& fit, const MethodRun& run) {
     try {
       FirstStrokes first = fit(posed->world, {run.options, {&posed->report, run.log.progress}});
       posed->sketch = std::move(first.sketch), posed->nats = first.nats, posed->odds = first.odds;
-      posed->round = rounds_among(posed->sketch, posed->world, select_options(run.options).round);
+      const RoundModel model = select_options(run.options).round;
+      for (const double nats : round_nats(posed->sketch, posed->world, model))
+        posed->round.push_back(nats > 0);
     } catch (const TooLittleError&) {
       posed->sketch = {}, posed->nats = 0;
     }

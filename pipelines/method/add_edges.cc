@@ -36,12 +36,10 @@ Sketch without_improbable(Sketch sketch, int first, const MissingEdges& missing,
                           const EdgeWorld& world, const ReconstructOptions& options, int* left) {
   const StrokeObservation o = with_evidence(world, options, &sketch);
   record_confidence(stroke_features(sketch, world, o), &sketch);
-  const Observation wide = observe_rounds(sketch, world, 0);
-  const RoundJudge rounds(world, wide, options.select.round);
-  std::vector<double> nats, of_group(missing.known.size(), INFINITY);
-  for (int s = 0; s < sketch.size(); ++s) {
-    nats.push_back(rounds.nats(s, nullptr));
-    const int g = s < first ? -1 : missing.group[s - first];
+  const std::vector<double> nats = round_nats(sketch, world, options.select.round);
+  std::vector<double> of_group(missing.known.size(), INFINITY);
+  for (int s = first; s < sketch.size(); ++s) {
+    const int g = missing.group[s - first];
     if (g >= 0) of_group[g] = std::min(of_group[g], nats[s] - missing.known[g]);
   }
   const double odds = odds_of_round({nats.begin(), nats.begin() + first});

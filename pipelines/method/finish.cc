@@ -26,14 +26,6 @@ Evidence unseen() {
   return e;
 }
 
-// What strokes are called when only some of them stay; -1 for the others.
-std::vector<int> numbers_after(const std::vector<bool>& stays) {
-  std::vector<int> now;
-  int next = 0;
-  for (const bool s : stays) now.push_back(s ? next++ : -1);
-  return now;
-}
-
 // Nodes of `before` at one of the places, which stay there if they have moved far.
 void put_back(const Sketch& before, const std::vector<Eigen::Vector3d>& places, double footprint,
               Sketch* after) {
@@ -146,15 +138,16 @@ std::vector<int> leave_out_doubtful(const StrokeOrigins& origins, const EdgeWorl
   const std::vector<bool> round =
       rounded_strokes(finished->sketch, origins, world, select_options(options));
   std::vector<bool> stays;
+  std::vector<int> now;
   std::vector<Numbers> features;
   int unsure = 0;
   for (int s = 0; s < finished->sketch.size(); ++s) {
     const bool sure = !(finished->sketch.evidence[s].confidence < options.min_confidence);
     stays.push_back(sure && !round[s]);
     unsure += !sure;
+    now.push_back(stays.back() ? int(features.size()) : -1);
     if (stays.back()) features.push_back(std::move(finished->features[s]));
   }
-  const std::vector<int> now = numbers_after(stays);
   finished->kept = renumbered(std::move(finished->kept), now);
   finished->features = std::move(features);
   const int before = finished->sketch.size();

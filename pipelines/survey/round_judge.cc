@@ -314,6 +314,15 @@ double RoundJudge::nats(int stroke, const EdgelFlags* others) const {
   return std::max(near, outlines_[stroke]) + widths_of_round(seen);
 }
 
+std::vector<double> round_nats(const Sketch& sketch, const EdgeWorld& world,
+                               const RoundModel& model) {
+  const Observation wide = observe_rounds(sketch, world, 0);
+  const RoundJudge judge(world, wide, model);
+  std::vector<double> nats;
+  for (int s = 0; s < sketch.size(); ++s) nats.push_back(judge.nats(s, nullptr));
+  return nats;
+}
+
 double odds_of_round(const std::vector<double>& nats) {
   constexpr double kRounds = 0.5, kEdges = 1;  // known beforehand
   // Edges that err look like rounds, all of them at once: they do not make one another rounds.

@@ -108,6 +108,10 @@ class RoundJudge {
   std::vector<double> outlines_;   // [nat] of a round, by all outlines near a stroke
 };
 
+/// RoundJudge::nats of every stroke of a sketch.
+std::vector<double> round_nats(const Sketch& sketch, const EdgeWorld& world,
+                               const RoundModel& model);
+
 /// Odds of a round rather than an edge before a stroke is looked at, from the likelihood ratios
 /// [nat] of all strokes of a scene: where all others are sharp, this one hardly is a round
 /// (empirical Bayes). The most probable ones, at most those without strokes: one half.

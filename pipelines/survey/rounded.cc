@@ -37,10 +37,7 @@ bool is_as_before(const Sketch& sketch, int stroke, const Sketch& before, double
 
 std::vector<bool> rounded_strokes(const Sketch& sketch, const StrokeOrigins& origins,
                                   const EdgeWorld& world, const SelectOptions& options) {
-  const Observation wide = observe_rounds(sketch, world, 0);
-  const RoundJudge judge(world, wide, options.round);
-  std::vector<double> nats;
-  for (int s = 0; s < sketch.size(); ++s) nats.push_back(judge.nats(s, nullptr));
+  const std::vector<double> nats = round_nats(sketch, world, options.round);
   const double odds = options.round_odds > 0 ? options.round_odds : odds_of_round(nats);
   std::vector<bool> round;
   for (int s = 0; s < sketch.size(); ++s) {
