@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
+#include "datasets/neighbours/kd_tree.h"
 #include "datasets/types/dense.h"
 #include "datasets/types/parallel.h"
 #include "edges/surfels/model/surfel_shading.h"
@@ -41,6 +41,11 @@ struct Halves {
   }
 };
 
+bool is_faint(const SurfelSet& set, int i, const Eigen::VectorXd& weight, double min_alpha,
+              double min_weight) {
+  return alpha_of(set.values(SurfelSet::kOpacity, i)) < min_alpha || weight[i] < min_weight;
+}
+
 // Keeps what is neither faint nor unseen nor halved, adds the halves.
 DensityChange replace(const SurfelSet& set, const Eigen::VectorXd& weight, double min_alpha,
                       double min_weight, const Halves& halves) {
@@ -49,7 +54,7 @@ DensityChange replace(const SurfelSet& set, const Eigen::VectorXd& weight, doubl
   DensityChange change;
   for (int i = 0; i < set.size(); ++i) {
     if (gone[i]) continue;
-    if (alpha_of(set.values(SurfelSet::kOpacity, i)) < min_alpha || weight[i] < min_weight)
+    if (is_faint(set, i, weight, min_alpha, min_weight))
       ++change.pruned;
     else
       change.kept.push_back(i);
@@ -68,47 +73,6 @@ std::vector<int> highest(const Eigen::VectorXd& score, int most) {
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return score[a] > score[b]; });
   if (int(order.size()) > most) order.resize(std::max(0, most));
   return order;
-}
-
-// Points by the cube of a grid that they lie in, cubes in the order of their places.
-class Bins {
- public:
-  Bins(const Eigen::Matrix3Xd& points, double side)
-      : low_(points.rowwise().minCoeff()), side_(side) {
-    for (int i = 0; i < points.cols(); ++i) entries_.push_back({place(points.col(i)), i});
-    std::sort(entries_.begin(), entries_.end());
-  }
-  // All points within `side` of p, and some more.
-  template <typename F>
-  void for_each_near(const Eigen::Vector3d& p, const F& f) const {
-    const Place middle = place(p);
-    for (int z = -1; z <= 1; ++z)
-      for (int y = -1; y <= 1; ++y) {
-        const Place first{middle[0] + z, middle[1] + y, middle[2] - 1};
-        auto e = std::lower_bound(entries_.begin(), entries_.end(), Entry{first, -1});
-        for (; e != entries_.end() && e->first[0] == first[0] && e->first[1] == first[1] &&
-               e->first[2] <= middle[2] + 1;
-             ++e)
-          f(e->second);
-      }
-  }
-
- private:
-  using Place = std::array<long, 3>;
-  using Entry = std::pair<Place, int>;
-  Place place(const Eigen::Vector3d& p) const {
-    const Eigen::Array3d q = ((p - low_) / side_).array().floor().max(-1e15).min(1e15);
-    return {long(q[2]), long(q[1]), long(q[0])};
-  }
-
-  Eigen::Vector3d low_;
-  double side_;
-  std::vector<Entry> entries_;
-};
-
-bool is_faint(const SurfelSet& set, int i, const Eigen::VectorXd& weight, double min_alpha,
-              double min_weight) {
-  return alpha_of(set.values(SurfelSet::kOpacity, i)) < min_alpha || weight[i] < min_weight;
 }
 
 }  // namespace
@@ -154,26 +118,20 @@ SurfelCloud facing_surfels(const SurfelCloud& cloud, const View& view, std::vect
     if (surfel_normal(cloud.rotation.col(i)).dot(to_eye) > kGrazing * to_eye.norm())
       indices->push_back(i);
   }
-  SurfelCloud out = SurfelCloud::zero(int(indices->size()));
-  for (int k = 0; k < out.size(); ++k) {
-    const int i = (*indices)[k];
-    out.center.col(k) = cloud.center.col(i), out.rotation.col(k) = cloud.rotation.col(i);
-    out.log_scale.col(k) = cloud.log_scale.col(i), out.opacity[k] = cloud.opacity[i];
-    out.color.col(k) = cloud.color.col(i), out.skew.col(k) = cloud.skew.col(i);
-  }
-  return out;
+  return {cloud.center(Eigen::all, *indices),    cloud.rotation(Eigen::all, *indices),
+          cloud.log_scale(Eigen::all, *indices), cloud.opacity(*indices),
+          cloud.color(Eigen::all, *indices),     cloud.skew(Eigen::all, *indices)};
 }
 
 SurfelGradient spread_gradient(const SurfelGradient& part, const std::vector<int>& indices, int n) {
   SurfelGradient out = SurfelGradient::zero(n);
-  for (size_t k = 0; k < indices.size(); ++k) {
-    const int i = indices[k];
-    out.center.col(i) = part.center.col(k), out.rotation.col(i) = part.rotation.col(k);
-    out.log_scale.col(i) = part.log_scale.col(k), out.opacity[i] = part.opacity[k];
-    out.color.col(i) = part.color.col(k), out.skew.col(i) = part.skew.col(k);
-    out.in_image.col(i) = part.in_image.col(k), out.in_image_abs.col(i) = part.in_image_abs.col(k);
-    out.splitting.col(i) = part.splitting.col(k), out.weight[i] = part.weight[k];
-  }
+  const auto& all = Eigen::all;
+  out.center(all, indices) = part.center, out.rotation(all, indices) = part.rotation;
+  out.log_scale(all, indices) = part.log_scale, out.opacity(indices) = part.opacity;
+  out.color(all, indices) = part.color, out.skew(all, indices) = part.skew;
+  out.in_image(all, indices) = part.in_image;
+  out.in_image_abs(all, indices) = part.in_image_abs;
+  out.splitting(all, indices) = part.splitting, out.weight(indices) = part.weight;
   return out;
 }
 
@@ -228,14 +186,12 @@ std::vector<std::pair<int, int>> neighbour_pairs(const SurfelSet& set, int count
   for (int i = 0; i < n; ++i) normal.col(i) = set.normal(i);
   const Eigen::Matrix3Xd p = set.values.middleRows<3>(SurfelSet::kCenter);
   const double least = std::cos(max_angle_deg * M_PI / 180);
-  const Bins bins(p, reach);
+  const KdTree tree(p);
   std::vector<std::vector<std::pair<double, int>>> near(n);
   parallel_for(n, 64, [&](int i) {
-    bins.for_each_near(p.col(i), [&](int j) {
-      const double d2 = (p.col(j) - p.col(i)).squaredNorm();
-      if (j != i && d2 <= reach * reach && normal.col(i).dot(normal.col(j)) > least)
-        near[i].push_back({d2, j});
-    });
+    for (const int j : tree.within(p.col(i), reach))
+      if (j != i && normal.col(i).dot(normal.col(j)) > least)
+        near[i].push_back({(p.col(j) - p.col(i)).squaredNorm(), j});
     const auto last = near[i].begin() + std::min<size_t>(count, near[i].size());
     std::partial_sort(near[i].begin(), last, near[i].end());
     near[i].erase(last, near[i].end());

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "datasets/neighbours/kd_tree.h"
 #include "datasets/types/parallel.h"
 #include "edges/image/mats.h"
 #include "edges/surfels/start/edge_planes.h"
@@ -249,28 +250,18 @@ std::vector<Crossing> crossings(const CellGrid& g, double* area) {
 }
 
 // Points no nearer to each other than `spacing`, drawn in a disorder that the seed fixes.
-std::vector<Crossing> thinned(std::vector<Crossing> all, const Eigen::AlignedBox3d& box,
-                              double spacing, int seed) {
+std::vector<Crossing> thinned(std::vector<Crossing> all, double spacing, int seed) {
   std::mt19937 random(1u + seed);
   for (size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
-  const Eigen::Vector3i n = (box.sizes() / spacing).array().ceil().cast<int>() + 3;
-  std::vector<std::vector<int>> bins(size_t(n.x()) * n.y() * n.z());
-  const auto bin = [&](const Eigen::Vector3i& q) {
-    return (size_t(q.z()) * n.y() + q.y()) * n.x() + q.x();
-  };
+  Eigen::Matrix3Xd positions(3, all.size());
+  for (size_t i = 0; i < all.size(); ++i) positions.col(i) = all[i].position;
+  const KdTree tree(positions);
+  std::vector<char> gone(all.size(), 0);
   std::vector<Crossing> out;
-  for (const Crossing& x : all) {
-    const Eigen::Array3i cell = ((x.position - box.min()) / spacing).array().floor().cast<int>();
-    const Eigen::Vector3i q = cell.max(0).min(n.array() - 3) + 1;
-    bool free = true;
-    for (int k = -1; k <= 1; ++k)
-      for (int j = -1; j <= 1; ++j)
-        for (int i = -1; i <= 1 && free; ++i)
-          for (const int other : bins[bin(q + Eigen::Vector3i(i, j, k))])
-            free = free && (out[other].position - x.position).norm() >= spacing;
-    if (!free) continue;
-    bins[bin(q)].push_back(int(out.size()));
-    out.push_back(x);
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (gone[i]) continue;
+    out.push_back(all[i]);
+    for (const int j : tree.within(all[i].position, spacing)) gone[j] = 1;
   }
   return out;
 }
@@ -300,9 +291,7 @@ SurfaceSamples photo_hull_surface(const std::vector<TrainingView>& views,
   if (all.empty()) return samples;
   // Points dropped at random until none fits any more cover 0.547 of the plane with their disks.
   samples.spacing = std::sqrt(0.7 * area / count);
-  const Eigen::AlignedBox3d box(grid.low,
-                                grid.low + grid.cell * Eigen::Vector3d(grid.nx, grid.ny, grid.nz));
-  const std::vector<Crossing> kept = thinned(all, box, samples.spacing, options.seed);
+  const std::vector<Crossing> kept = thinned(all, samples.spacing, options.seed);
   samples.position.resize(3, kept.size());
   samples.normal.resize(3, kept.size());
   for (size_t i = 0; i < kept.size(); ++i) {
