@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/readers/colmap_model.h"
 
-#include <algorithm>
-#include <filesystem>
-
-#include "datasets/readers/colmap_files.h"
-#include "datasets/types/errors.h"
-
 namespace sketchsplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr LensModel kNone = LensModel::kPinhole;
 constexpr ColmapCameraModel kCameraModels[] = {
@@ -26,19 +18,6 @@ constexpr ColmapCameraModel kCameraModels[] = {
     {9, "RADIAL_FISHEYE", 5, false, kNone},
     {10, "THIN_PRISM_FISHEYE", 12, false, kNone},
 };
-
-std::string file_of(const std::string& folder, const std::string& name) {
-  return (fs::path(folder) / name).string();
-}
-
-bool is_file(const std::string& folder, const std::string& name) {
-  std::error_code none;
-  return fs::is_regular_file(file_of(folder, name), none);
-}
-
-bool is_whole(const std::string& folder, const std::string& ending) {
-  return is_file(folder, "cameras" + ending) && is_file(folder, "images" + ending);
-}
 
 }  // namespace
 
@@ -91,35 +70,6 @@ Pose make_colmap_pose(const Eigen::Vector4d& quaternion, const Eigen::Vector3d& 
       2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),               //
       2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
   return pose;
-}
-
-bool has_colmap_model(const std::string& folder) {
-  return is_whole(folder, ".bin") || is_whole(folder, ".txt");
-}
-
-std::uint64_t count_colmap_images(const std::string& folder) {
-  if (is_whole(folder, ".bin")) return count_images_binary(file_of(folder, "images.bin"));
-  return read_images_text(file_of(folder, "images.txt")).size();
-}
-
-ColmapModel read_colmap_model(const std::string& folder) {
-  ColmapModel model;
-  if (is_whole(folder, ".bin")) {
-    model.images_path = file_of(folder, "images.bin");
-    model.cameras = read_cameras_binary(file_of(folder, "cameras.bin"));
-    model.images = read_images_binary(model.images_path);
-  } else {
-    model.images_path = file_of(folder, "images.txt");
-    model.cameras = read_cameras_text(file_of(folder, "cameras.txt"));
-    model.images = read_images_text(model.images_path);
-  }
-  if (is_file(folder, "points3D.bin"))
-    model.points = read_points_binary(file_of(folder, "points3D.bin"));
-  else if (is_file(folder, "points3D.txt"))
-    model.points = read_points_text(file_of(folder, "points3D.txt"));
-  std::stable_sort(model.images.begin(), model.images.end(),
-                   [](const ColmapImage& a, const ColmapImage& b) { return a.id < b.id; });
-  return model;
 }
 
 }  // namespace sketchsplat

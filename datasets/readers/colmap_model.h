@@ -47,6 +47,26 @@ struct ColmapModel {
   std::vector<ColmapPoint> points;
 };
 
+/// One of COLMAP's camera models (src/colmap/sensor/models.h).
+struct ColmapCameraModel {
+  int id;
+  const char* name;
+  int parameters;
+  bool known;       ///< by Lens
+  LensModel model;  ///< of known ones
+};
+
+/// By the id in binary files or the name in text files; null if there is none.
+const ColmapCameraModel* find_camera_model(int id);
+const ColmapCameraModel* find_camera_model(const std::string& name);
+
+/// From the parameters in COLMAP's order; as many as the model has.
+ColmapCamera make_colmap_camera(const ColmapCameraModel& model, const ImageSize& size,
+                                const std::vector<double>& parameters);
+
+/// From a quaternion w, x, y, z of any length.
+Pose make_colmap_pose(const Eigen::Vector4d& quaternion, const Eigen::Vector3d& translation);
+
 /// Are cameras and images there, both as .bin or both as .txt?
 bool has_colmap_model(const std::string& folder);
 
