@@ -128,7 +128,7 @@ def edges():
 
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
-    for name in ("images", "masks", "sparse/0", "gt"):
+    for name in ("images", "masks", "sparse/0"):
         os.makedirs(os.path.join(folder, name), exist_ok=True)
     images = []
     for view in range(VIEWS):
@@ -145,7 +145,7 @@ def main():
         file.write("".join(line + "\n\n" for line in images))
     with open(os.path.join(folder, "sparse/0/points3D.txt"), "w") as file:
         file.write("")
-    with open(os.path.join(folder, "gt/curves.json"), "w") as file:
+    with open(os.path.join(folder, "gt.json"), "w") as file:
         json.dump(edges(), file)
 
 
