@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Whether two builds of the program write the same bytes.
+"""Whether two builds of the program, or several numbers of threads, write the same bytes.
 
-    same_bytes.py BINARY OTHER --scenes SCENE... --out DIR
+    same_bytes.py BINARY [OTHER] --scenes SCENE... --out DIR [--threads N...]
 
-Reconstructs each scene with both (--reproducible) and compares the folders of results. Reports name
-the commit of their build: both should be of one. Prints a line for each scene; exit status 0 if all
-files are the same, 1 if not.
+Reconstructs each scene with every binary and number of threads (--reproducible) and compares the
+folders of results with the first. Reports name the commit of their build: both should be of one.
+Prints a line for each scene; exit status 0 if all files are the same, 1 if not.
 """
 import argparse
 import filecmp
@@ -15,35 +15,45 @@ import subprocess
 import sys
 
 
-def reconstructed(binary, scene, folder):
-    subprocess.run([binary, "reconstruct", scene, "--out", folder, "--reproducible", "--quiet"],
-                   stdout=subprocess.DEVNULL, check=True)
+def reconstructed(binary, threads, scene, folder):
+    """Names of the files that a run writes."""
+    subprocess.run([binary, "reconstruct", scene, "--out", folder, "--reproducible", "--quiet",
+                    "--threads", str(threads)], stdout=subprocess.DEVNULL, check=True)
     return {os.path.relpath(os.path.join(root, name), folder)
             for root, _, names in os.walk(folder) for name in names}
 
 
-def differing(one, other, names):
-    return [name for name in sorted(names)
-            if not filecmp.cmp(os.path.join(one, name), os.path.join(other, name), shallow=False)]
+def differing_files(binaries, threads, scene, out):
+    """Names of the files that any run lacks or writes otherwise than the first; and of all."""
+    first, folder, differing, names = None, None, set(), set()
+    for b, binary in enumerate(binaries):
+        for n in threads:
+            place = os.path.join(out, f"{b}-{n}", os.path.basename(os.path.normpath(scene)))
+            names = reconstructed(binary, n, scene, place)
+            if first is None:
+                first, folder = names, place
+                continue
+            differing |= first ^ names
+            differing |= {name for name in first & names
+                          if not filecmp.cmp(os.path.join(folder, name),
+                                             os.path.join(place, name), shallow=False)}
+    return sorted(differing), sorted(first | names)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("binary")
-    parser.add_argument("other")
+    parser.add_argument("binaries", nargs="+")
     parser.add_argument("--scenes", nargs="+", required=True)
     parser.add_argument("--out", required=True)
+    parser.add_argument("--threads", nargs="+", type=int, default=[0])
     arguments = parser.parse_args()
     same = True
     for scene in arguments.scenes:
-        name = os.path.basename(os.path.normpath(scene))
-        folders = [os.path.join(arguments.out, which, name) for which in ("one", "other")]
-        files = [reconstructed(binary, scene, folder)
-                 for binary, folder in zip((arguments.binary, arguments.other), folders)]
-        wrong = sorted(files[0] ^ files[1]) + differing(*folders, files[0] & files[1])
-        print(f"{name}: {len(files[0] | files[1])} files,",
-              "differ: " + ", ".join(wrong) if wrong else "the same")
-        same = same and not wrong
+        differing, names = differing_files(arguments.binaries, arguments.threads, scene,
+                                           arguments.out)
+        print(f"{os.path.basename(os.path.normpath(scene))}: {len(names)} files,",
+              "differ: " + ", ".join(differing) if differing else "the same")
+        same = same and not differing
     return 0 if same else 1
 
 
