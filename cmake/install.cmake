@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 
 # The program looks for what it loads in ../lib/sketchsplat beside itself: see plugin_path.cc.
 install(TARGETS sketchsplat RUNTIME DESTINATION bin COMPONENT program)
-install(TARGETS sketchsplat_brep sketchsplat_charts sketchsplat_image_formats sketchsplat_synthesis
+install(TARGETS sketchsplat_brep sketchsplat_image_formats sketchsplat_synthesis
   LIBRARY DESTINATION lib/sketchsplat COMPONENT program)
 
 # The library for programs of others: find_package(sketchsplat), sketchsplat::sketchsplat.
@@ -36,6 +36,7 @@ install(FILES README.md LICENSE OPTIONS.md CHANGELOG.md cmake/copyright
   DESTINATION share/doc/sketchsplat COMPONENT program)
 install(DIRECTORY docs DESTINATION share/doc/sketchsplat COMPONENT program)
 install(PROGRAMS eval/abc_nef_table.py DESTINATION share/sketchsplat COMPONENT program)
+install(PROGRAMS eval/charts.py DESTINATION lib/sketchsplat COMPONENT program)
 install(PROGRAMS scripts/slurm/array.sh scripts/slurm/merge.sh scripts/slurm/one_node.sh
   scripts/slurm/submit.sh DESTINATION share/sketchsplat/slurm COMPONENT program)
 
@@ -54,7 +55,7 @@ set(CPACK_COMPONENTS_ALL program)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap, freecad, slurm-wlm, parallel, python3")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap, freecad, slurm-wlm, parallel, python3, python3-matplotlib")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
   "Photographs or renderings of a CAD object with known cameras become its\n\
  edges: lines, arcs, circles, ellipses and splines that share their\n\

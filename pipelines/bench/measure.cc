@@ -2,6 +2,7 @@
 #include "pipelines/bench/measure.h"
 
 #include <omp.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "datasets/readers/scene.h"
 #include "datasets/synthetic/scene/synthesize.h"
@@ -16,7 +18,7 @@
 #include "pipelines/base/atomic_file.h"
 #include "pipelines/base/child.h"
 #include "pipelines/base/hash.h"
-#include "pipelines/bench/machine.h"
+#include "pipelines/base/version.h"
 #include "pipelines/command/cli.h"
 #include "sketches/io/json.h"
 
@@ -30,6 +32,16 @@ std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += word + "\n";
   return text;
+}
+
+std::string cpu_model() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos)
+      return line.substr(colon + 2);
+  }
+  return "unknown";
 }
 
 // What tells a folder from an older one of the same name: its markers' sizes and times.
@@ -98,6 +110,15 @@ std::vector<std::string> method_flags(const BenchJob& job, const std::vector<Fie
 }
 
 }  // namespace
+
+OptionTexts machine_labels() {
+  const double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  return {{"version", program_version()},
+          {"program", hash_of_file("/proc/self/exe")},
+          {"cpu", cpu_model()},
+          {"cores", std::to_string(std::thread::hardware_concurrency())},
+          {"memory", std::to_string(std::lround(bytes / 1e9)) + " GB"}};
+}
 
 Measurer::Measurer(const Settings& settings)
     : settings_(settings),

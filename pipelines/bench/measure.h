@@ -11,6 +11,10 @@
 
 namespace sketchsplat {
 
+/// Labels of everything that was measured here: "version", "program" (hash of the executable),
+/// "cpu" (model), "cores", "memory" ("25 GB").
+OptionTexts machine_labels();
+
 /// Runs jobs in child processes and reads what they wrote.
 class Measurer {
  public:

@@ -62,19 +62,15 @@ BenchJob scene_job(const Suite& suite, const BenchScene& scene, const BenchAxis*
 void add_runs(const Suite& suite, const BenchJob& scene, const OptionTexts& with,
               BenchLevel* jobs) {
   for (const BenchVariant& variant : suite.variants) {
-    for (const int seed : suite.seeds) {
-      BenchJob job = scene;
-      job.variant = variant.name;
-      if (suite.seeds.size() > 1) job.scene += ", seed " + std::to_string(seed);
-      job.reconstruct = {{"seed", std::to_string(seed)}};
-      add_options(variant.options, &job.reconstruct);
-      add_options(suite.reconstruct, &job.reconstruct);
-      if (job.axis) add_options(job.axis->reconstruct, &job.reconstruct);
-      add_options(with, &job.reconstruct);
-      if (job.axis && job.axis->of_reconstruct)
-        add_options({{job.axis->option, job.level}}, &job.reconstruct);
-      jobs->push_back(job);
-    }
+    BenchJob job = scene;
+    job.variant = variant.name;
+    add_options(variant.options, &job.reconstruct);
+    add_options(suite.reconstruct, &job.reconstruct);
+    if (job.axis) add_options(job.axis->reconstruct, &job.reconstruct);
+    add_options(with, &job.reconstruct);
+    if (job.axis && job.axis->of_reconstruct)
+      add_options({{job.axis->option, job.level}}, &job.reconstruct);
+    jobs->push_back(job);
   }
 }
 
@@ -86,9 +82,9 @@ double object_pixels(const OptionTexts& synthesize) {
   rig.object_size = number_of(synthesize, "object-size", rig.object_size);
   rig.focal = number_of(synthesize, "focal", rig.focal);
   rig.distance = number_of(synthesize, "distance", rig.distance);
-  const bool photographs = std::find(synthesize.begin(), synthesize.end(),
-                                     std::pair<std::string, std::string>("style", "photo")) !=
-                           synthesize.end();
+  const bool photographs =
+      std::find(synthesize.begin(), synthesize.end(),
+                std::pair<std::string, std::string>("style", "photo")) != synthesize.end();
   rig = resolved(rig, photographs);
   return rig.focal / rig.distance;
 }

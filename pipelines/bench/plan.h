@@ -13,7 +13,7 @@ struct BenchJob {
   std::string scene, variant;  ///< names
   std::string folder;          ///< of a scene that exists; empty: synthesized
   OptionTexts synthesize;      ///< of the verb, "part" and "seed" among them; each name once
-  OptionTexts reconstruct;     ///< of the verb, "seed" among them; each name once
+  OptionTexts reconstruct;     ///< of the verb; each name once
   const BenchAxis* axis = nullptr;
   std::string level;  ///< of the axis, as the suite states it
 };

@@ -2,7 +2,6 @@
 #include "pipelines/bench/row.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -30,7 +29,6 @@ void set_in(List* list, const std::string& name, const Value& value) {
 }
 
 std::string text_of_number(double value, const char* format) {
-  if (!std::isfinite(value)) return "-";
   char text[64];
   std::snprintf(text, sizeof text, format, value);
   return text;
@@ -42,48 +40,32 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 // As many digits as mean something.
 const char* format_of_number(const std::string& name) {
-  if (ends_with(name, "strokes") || ends_with(name, "edges") || name == "peak_mb") return "%.0f";
+  if (ends_with(name, "strokes") || name == "peak_mb") return "%.0f";
   const std::string last = name.substr(name.rfind('_') + 1);
-  if (last[0] == 'F' || last == "f" || name == "total_per_decode") return "%.1f";
+  if (last[0] == 'F' || last == "f" || last == "visible" || ends_with(name, "_decode"))
+    return "%.1f";
   return "%.2f";
 }
 
-// Names of the numbers of all rows; a new one stands behind the one that it follows in its row.
+// Names of a list of all rows; a new one stands behind the one that it follows in its row.
 template <typename List>
-void gather_names(const List& list, std::vector<std::string>* names) {
-  auto after = names->begin();
-  for (const auto& [name, value] : list) {
-    const auto known = std::find(names->begin(), names->end(), name);
-    after = known == names->end() ? names->insert(after, name) : known;
-    ++after;
-  }
-}
-
-std::vector<std::string> number_names(const std::vector<BenchRow>& rows) {
+std::vector<std::string> names_of(const std::vector<BenchRow>& rows, List BenchRow::*list) {
   std::vector<std::string> names;
-  for (const BenchRow& row : rows) gather_names(row.numbers, &names);
+  for (const BenchRow& row : rows) {
+    auto after = names.begin();
+    for (const auto& entry : row.*list) {
+      const auto known = std::find(names.begin(), names.end(), entry.first);
+      after = known == names.end() ? names.insert(after, entry.first) : known;
+      ++after;
+    }
+  }
   return names;
 }
 
-std::string padded(const std::string& text, size_t width, bool left) {
-  const std::string space(width > text.size() ? width - text.size() : 0, ' ');
-  return left ? text + space : space + text;
-}
-
-BenchRow row_of(const Json& object) {
-  BenchRow row;
-  for (const auto& [name, value] : object.items()) {
-    if (name == "scene" || name == "variant") {
-      (name == "scene" ? row.scene : row.variant) = value.is_string() ? value : Json("");
-    } else if (value.is_string()) {
-      row.labels.push_back({name, value.get<std::string>()});
-    } else if (value.is_number()) {
-      row.numbers.push_back({name, value.get<double>()});
-    } else {
-      row.numbers.push_back({name, kNone});
-    }
-  }
-  return row;
+// What a row is averaged with.
+BenchRow group_of(const BenchRow& row) {
+  const std::string axis = row.label("axis");
+  return {axis.empty() ? "mean" : axis + " " + row.label("at"), row.variant, {}, {}};
 }
 
 }  // namespace
@@ -106,54 +88,41 @@ void BenchRow::set(const std::string& name, const std::string& text) {
 void BenchRow::set(const std::string& name, double value) { set_in(&numbers, name, value); }
 
 std::vector<BenchRow> mean_rows(const std::vector<BenchRow>& rows) {
-  const std::vector<std::string> names = number_names(rows);
-  std::vector<std::string> variants;
-  for (const BenchRow& row : rows)
-    if (std::find(variants.begin(), variants.end(), row.variant) == variants.end())
-      variants.push_back(row.variant);
+  const std::vector<std::string> names = names_of(rows, &BenchRow::numbers);
+  const auto same = [](const BenchRow& a, const BenchRow& b) {
+    return a.scene == b.scene && a.variant == b.variant;
+  };
   std::vector<BenchRow> means;
-  for (const std::string& variant : variants) {
-    means.push_back({"mean", variant, {}, {}});
+  for (const BenchRow& row : rows) {
+    const BenchRow group = group_of(row);
+    if (std::none_of(means.begin(), means.end(), [&](auto& mean) { return same(mean, group); }))
+      means.push_back(group);
+  }
+  for (BenchRow& mean : means) {
     for (const std::string& name : names) {
       double sum = 0;
       int count = 0;
       for (const BenchRow& row : rows) {
-        const double value = row.variant == variant ? row.number(name) : kNone;
+        const double value = same(group_of(row), mean) ? row.number(name) : kNone;
         if (std::isfinite(value)) sum += value, ++count;
       }
-      means.back().numbers.push_back({name, count ? sum / count : kNone});
+      mean.numbers.push_back({name, count ? sum / count : kNone});
     }
   }
   return means;
 }
 
-std::string solid_counts(const std::vector<BenchRow>& rows) {
-  std::vector<std::pair<std::string, std::array<int, 3>>> counts;
-  for (const BenchRow& row : rows) {
-    if (!std::isfinite(row.number("solid_right"))) continue;
-    auto own = std::find_if(counts.begin(), counts.end(),
-                            [&](const auto& c) { return c.first == row.variant; });
-    if (own == counts.end()) own = counts.insert(counts.end(), {row.variant, {0, 0, 0}});
-    own->second[0] += row.number("solid_right") > 0;
-    own->second[1] += row.number("solid_wrong") > 0;
-    own->second[2] += row.number("solid_refused") > 0;
-  }
-  std::string text;
-  for (const auto& [variant, n] : counts)
-    text += "solids, " + variant + ": " + std::to_string(n[0]) + " right, " + std::to_string(n[1]) +
-            " wrong, " + std::to_string(n[2]) + " refused\n";
-  return text;
-}
-
 std::string bench_table(const std::vector<BenchRow>& rows,
                         const std::vector<std::string>& columns) {
-  const std::vector<std::string> names = columns.empty() ? number_names(rows) : columns;
   std::vector<std::vector<std::string>> lines = {{"scene", "variant"}};
-  lines[0].insert(lines[0].end(), names.begin(), names.end());
+  lines[0].insert(lines[0].end(), columns.begin(), columns.end());
   for (const BenchRow& row : rows) {
     lines.push_back({row.scene, row.variant});
-    for (const std::string& name : names)
-      lines.back().push_back(text_of_number(row.number(name), format_of_number(name)));
+    for (const std::string& name : columns) {
+      const double value = row.number(name);
+      lines.back().push_back(std::isfinite(value) ? text_of_number(value, format_of_number(name))
+                                                  : "-");
+    }
   }
   std::vector<size_t> width(lines[0].size());
   for (const auto& line : lines)
@@ -161,20 +130,21 @@ std::string bench_table(const std::vector<BenchRow>& rows,
   std::string table;
   for (size_t i = 0; i < lines.size(); ++i) {
     if (i > 1 && lines[i][0] != lines[i - 1][0]) table += "\n";
-    for (size_t c = 0; c < lines[i].size(); ++c)
-      table += (c ? "  " : "") + padded(lines[i][c], width[c], c < 2);
+    for (size_t c = 0; c < lines[i].size(); ++c) {
+      const std::string space(width[c] - lines[i][c].size(), ' ');
+      table += (c ? "  " : "") + (c < 2 ? lines[i][c] + space : space + lines[i][c]);
+    }
     table += "\n";
   }
   return table;
 }
 
 std::string bench_csv(const std::vector<BenchRow>& rows) {
-  std::vector<std::string> labels;
-  for (const BenchRow& row : rows) gather_names(row.labels, &labels);
-  const std::vector<std::string> numbers = number_names(rows);
+  const std::vector<std::string> labels = names_of(rows, &BenchRow::labels);
+  const std::vector<std::string> numbers = names_of(rows, &BenchRow::numbers);
   std::string csv = "scene,variant";
-  for (const std::string& name : labels) csv += "," + name;
-  for (const std::string& name : numbers) csv += "," + name;
+  for (const auto* names : {&labels, &numbers})
+    for (const std::string& name : *names) csv += "," + name;
   csv += "\n";
   for (const BenchRow& row : rows) {
     csv += csv_cell(row.scene) + "," + csv_cell(row.variant);
@@ -188,11 +158,18 @@ std::string bench_csv(const std::vector<BenchRow>& rows) {
   return csv;
 }
 
-std::string bench_json(const std::vector<BenchRow>& rows, const std::string& suite) {
+std::string bench_json(const std::vector<BenchRow>& rows, const Suite& suite) {
   Json out = {{"program", "sketchsplat"},
               {"version", program_version()},
-              {"suite", suite},
+              {"suite", suite.name},
+              {"axes", Json::array()},
               {"rows", Json::array()}};
+  for (const BenchAxis& axis : suite.axes)
+    out["axes"].push_back({{"name", axis.name},
+                           {"title", axis.title},
+                           {"log", axis.log},
+                           {"report", axis.report},
+                           {"against", axis.against}});
   for (const BenchRow& row : rows) {
     Json object = {{"scene", row.scene}, {"variant", row.variant}};
     for (const auto& [name, text] : row.labels) object[name] = text;
@@ -206,19 +183,22 @@ std::string bench_json(const std::vector<BenchRow>& rows, const std::string& sui
 std::vector<BenchRow> read_bench_json(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return {};
-  Json json;  // ordered: columns stay where they are
-  try {
-    json = parse_json<Json>(in, path);
-  } catch (const Json::exception&) {
-    // said below
-  }
-  if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array())
-    throw InputError(path, "results of sketchsplat bench", "something else");
   std::vector<BenchRow> rows;
-  for (const Json& row : json["rows"]) {
-    if (!row.is_object() || !row.contains("scene") || !row.contains("variant"))
-      throw InputError(path, "rows with scene and variant", json_text(row).substr(0, 60));
-    rows.push_back(row_of(row));
+  try {
+    const Json json = parse_json<Json>(in, path);  // ordered: columns stay where they are
+    for (const Json& object : json.at("rows")) {
+      BenchRow row = {object.at("scene"), object.at("variant"), {}, {}};
+      for (const auto& [name, value] : object.items()) {
+        if (name == "scene" || name == "variant") continue;
+        if (value.is_string())
+          row.labels.push_back({name, value});
+        else
+          row.numbers.push_back({name, value.is_number() ? value.get<double>() : kNone});
+      }
+      rows.push_back(row);
+    }
+  } catch (const Json::exception& e) {
+    throw InputError(path, "results of sketchsplat bench", e.what());
   }
   return rows;
 }

@@ -2,26 +2,24 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "pipelines/base/run_report.h"
-#include "pipelines/options/common_options.h"
+#include "pipelines/bench/suite.h"
 
 namespace sketchsplat {
 
-/// What one way of running the method made of one scene.
+/// Named texts and numbers of one run of the method on one scene, in the order of their columns.
 struct BenchRow {
   std::string scene, variant;
-  /// Named texts: "key" (what decides the row; equal keys need not be run twice), "status" (of the
-  /// run; see README), "reason", "part", "axis", "program", "cpu" ... Whatever a runner knows.
+  /// "key" (what decides the row; equal keys need not be run twice), "status" (exit status of the
+  /// run, or "no scene"), "reason", "axis", "at", "program", "cpu" ...
   OptionTexts labels;
-  /// Named numbers; NaN where there is none. Of every row that was run: what `evaluate --json`
-  /// tells (nested names joined by '_': "fine_F5"), seconds per stage of the run, "total" (seconds
-  /// that a user waits), "cpu_seconds" (of all threads), "decode" (seconds that one thread takes to
-  /// decode the scene's images), "total_per_decode", "peak_mb"; of parts that
-  /// are known "solid_right", "solid_wrong", "solid_refused", one of which is 1; of a level of an
-  /// axis: "level".
+  /// NaN where there is none. Of every row that was run: numbers of `evaluate --json` (nested names
+  /// joined by '_': "fine_F5"), seconds per stage of the run, "total" (wall clock), "cpu_seconds"
+  /// (of all threads), "decode" (seconds of one thread for decoding the scene's images),
+  /// "total_per_decode", "peak_mb"; of parts that are known "solid_right", "solid_wrong",
+  /// "solid_refused", one of which is 1; of a level of an axis: "level".
   Numbers numbers;
 
   std::string label(const std::string& name) const;  ///< empty if there is none
@@ -30,26 +28,23 @@ struct BenchRow {
   void set(const std::string& name, double value);
 };
 
-/// Means over the scenes, one row per variant, the scene called "mean". NaNs do not take part.
+/// Means over the scenes, one row per level of an axis and variant, the scene called "mean" or
+/// "AXIS LEVEL". NaNs do not take part.
 std::vector<BenchRow> mean_rows(const std::vector<BenchRow>& rows);
 
-/// A line per variant: how many solids are right, wrong and refused; empty if no part is known.
-std::string solid_counts(const std::vector<BenchRow>& rows);
-
 /// The rows under their headings, aligned, a blank line between scenes. "-" where there is no
-/// number. `columns` are names of numbers, empty: all.
-std::string bench_table(const std::vector<BenchRow>& rows,
-                        const std::vector<std::string>& columns = {});
+/// number. `columns` are names of numbers.
+std::string bench_table(const std::vector<BenchRow>& rows, const std::vector<std::string>& columns);
 
 /// Comma-separated, all digits; empty where there is no number. Columns are all labels and numbers
 /// of all rows, in the order in which they are met.
 std::string bench_csv(const std::vector<BenchRow>& rows);
 
-/// {"program", "version", "suite", "rows": [{"scene", "variant", label: text, number: value,
-/// ...}]}; null where there is no number.
-std::string bench_json(const std::vector<BenchRow>& rows, const std::string& suite);
+/// {"program", "version", "suite", "axes": [{"name", "title", "log", "report", "against"}], "rows":
+/// [{"scene", "variant", label: text, number: value, ...}]}; null where there is no number.
+std::string bench_json(const std::vector<BenchRow>& rows, const Suite& suite);
 
-/// Reads what bench_json wrote; no rows if there is no such file. Throws InputError.
+/// Reads the rows that bench_json wrote; none if there is no such file. Throws InputError.
 std::vector<BenchRow> read_bench_json(const std::string& path);
 
 }  // namespace sketchsplat

@@ -9,13 +9,14 @@
 #include "datasets/truth/ground_truth.h"
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
-#include "pipelines/bench/machine.h"
 #include "pipelines/bench/measure.h"
 
 namespace sketchsplat {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kCollapsedF5 = 20;  // an axis ends where no part is above [per cent]
 
 std::string folder_name(std::string text) {
   std::replace_if(
@@ -62,7 +63,7 @@ class Rows {
     std::vector<BenchRow> rows = rows_;
     if (!all) rows.insert(rows.end(), old_.begin(), old_.end());
     write_atomically(run_.out + "/rows.json",
-                     [&](std::ostream& out) { out << bench_json(rows, run_.suite.name); });
+                     [&](std::ostream& out) { out << bench_json(rows, run_.suite); });
     write_atomically(run_.out + "/rows.csv", [&](std::ostream& out) { out << bench_csv(rows); });
   }
   const std::vector<BenchRow>& list() const { return rows_; }
@@ -111,7 +112,7 @@ bool run_level(const BenchRun& run, const BenchLevel& jobs, Measurer* measurer, 
     place(job, &row);
     rows->add(row);
     if (fresh) rows->write(false);
-    works |= row.number("F5") >= run.suite.collapse_f5;
+    works |= row.number("F5") >= kCollapsedF5;
     stage->step();
   }
   return works;
@@ -127,7 +128,7 @@ void run_axis(const BenchRun& run, const BenchAxis* axis, Measurer* measurer, Ro
   for (const BenchLevel& level : levels) {
     const bool works = run_level(run, level, measurer, rows, &stage, progress);
     done += level.size();
-    if (!works && axis && axis->report == AxisReport::kDrop) break;
+    if (!works && axis && axis->report == "drop") break;
   }
   stage.result(std::to_string(done) + " rows");
 }

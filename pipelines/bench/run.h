@@ -28,7 +28,7 @@ struct BenchRun {
 ///
 /// A run that fails is a row with F = 0 and the label "reason"; one whose scene cannot be made has
 /// no numbers. An axis that reports where accuracy drops ends at the level where no row has an F5
-/// above suite.collapse_f5. Folders without ground truth are left out with a warning.
+/// above 20. Folders without ground truth are left out with a warning.
 ///
 /// Throws InputError (no scene has a truth; out/rows.json is something else), OutputError,
 /// UsageError (the program refuses an option that the suite names).

@@ -64,6 +64,12 @@ struct Place {
     for (const Place& element : elements()) all.push_back(element.text());
     return all;
   }
+  std::string one_of(const Names& names) const {
+    const std::string word = text();
+    if (std::find(names.begin(), names.end(), word) == names.end())
+      complain("one of " + joined(names), shown());
+    return word;
+  }
   double number(double low, double high) const {
     try {
       const double value = node.as<double>();
@@ -118,11 +124,22 @@ BenchScene part_scene(const std::string& part, const std::string& suite) {
   return {fs::path(part).stem(), "", file ? beside(suite, part) : part, {}};
 }
 
-BenchScene scene_of(const Place& place) {
-  if (place.node.IsScalar()) {
-    const std::string folder = beside(place.path, place.text());
-    return {fs::path(folder + "/.").lexically_normal().parent_path().filename(), folder, "", {}};
+BenchScene folder_scene(const std::string& folder) {
+  return {fs::path(folder + "/.").lexically_normal().parent_path().filename(), folder, "", {}};
+}
+
+// Gives scenes of one name different ones.
+void tell_apart(std::vector<BenchScene>* scenes) {
+  std::set<std::string> taken;
+  for (BenchScene& scene : *scenes) {
+    const std::string stem = scene.name;
+    for (int k = 2; !taken.insert(scene.name).second; ++k)
+      scene.name = stem + "_" + std::to_string(k);
   }
+}
+
+BenchScene scene_of(const Place& place) {
+  if (place.node.IsScalar()) return folder_scene(beside(place.path, place.text()));
   place.check_keys({"part", "folder", "name", "synthesize"});
   if (place.has("part") == place.has("folder"))
     place.complain("a scene with either part or folder",
@@ -145,21 +162,8 @@ std::vector<BenchScene> scenes_of(const Place& place) {
   if (place.has("parts"))
     for (const std::string& part : place["parts"].texts())
       scenes.push_back(part_scene(part, place.path));
-  std::set<std::string> taken;
-  for (BenchScene& scene : scenes) {
-    const std::string stem = scene.name;
-    for (int k = 2; !taken.insert(scene.name).second; ++k)
-      scene.name = stem + "_" + std::to_string(k);
-  }
+  tell_apart(&scenes);
   return scenes;
-}
-
-AxisReport report_of(const Place& place) {
-  const std::string text = place.text();
-  if (text == "drop") return AxisReport::kDrop;
-  if (text == "constant") return AxisReport::kConstant;
-  if (text == "exponent") return AxisReport::kExponent;
-  place.complain("one of drop, constant, exponent", place.shown());
 }
 
 // "synthesize.noise", "reconstruct.seed"
@@ -194,12 +198,12 @@ BenchAxis axis_of(const Place& place) {
   }
   if (place.has("pixels")) axis.in_pixels = place["pixels"].boolean();
   if (place.has("log")) axis.log = place["log"].boolean();
-  if (place.has("report")) axis.report = report_of(place["report"]);
+  if (place.has("report")) axis.report = place["report"].one_of({"drop", "constant", "exponent"});
   if (place.has("against")) axis.against = place["against"].text();
-  if (axis.against.empty() != (axis.report != AxisReport::kExponent))
+  if (axis.against.empty() != (axis.report != "exponent"))
     place.complain("'against' where report is 'exponent', and only there", "'" + axis.name + "'");
   if (!place.has("vary") && axis.against.empty()) place["vary"];
-  if (axis.report == AxisReport::kDrop || axis.in_pixels)
+  if (axis.report == "drop" || axis.in_pixels)
     for (const Place& level : place["levels"].elements())
       if (axis.in_pixels || !level_number(level.text())) level.number(-1e12, 1e12);
   axis.scenes = scenes_of(place);
@@ -221,29 +225,20 @@ void read_axes(const Place& place, Suite* suite) {
 }
 
 Suite suite_of(const Place& place) {
-  place.check_keys({"name", "scenes", "parts", "presets", "detectors", "ablation", "seeds",
-                    "part-seeds", "synthesize", "reconstruct", "axes", "repeats", "timeout",
-                    "collapse", "keep"});
+  place.check_keys({"name", "scenes", "parts", "presets", "detectors", "ablation", "part-seeds",
+                    "synthesize", "reconstruct", "axes", "repeats", "timeout"});
   Suite suite;
-  suite.path = place.path;
   suite.name = place.has("name") ? place["name"].text() : fs::path(place.path).stem().string();
   suite.scenes = scenes_of(place);
   const Names detectors = place.has("detectors") ? place["detectors"].texts() : Names{"image"};
-  suite.variants =
-      preset_variants(place.has("presets") ? place["presets"].texts() : preset_names(), detectors);
-  if (place.has("ablation") && place["ablation"].boolean())
-    suite.variants = ablation_variants_of(detectors);
-  if (place.has("seeds")) {
-    suite.seeds.clear();
-    for (const std::string& seed : seeds_of(place["seeds"])) suite.seeds.push_back(std::stoi(seed));
-  }
+  const Names presets = place.has("presets") ? place["presets"].texts() : preset_names();
+  const bool ablation = place.has("ablation") && place["ablation"].boolean();
+  suite.variants = ablation ? ablation_variants_of(detectors) : preset_variants(presets, detectors);
   if (place.has("part-seeds")) suite.part_seeds = seeds_of(place["part-seeds"]);
   if (place.has("synthesize")) suite.synthesize = place["synthesize"].options();
   if (place.has("reconstruct")) suite.reconstruct = place["reconstruct"].options();
   if (place.has("repeats")) suite.repeats = place["repeats"].integer(1, 1000);
   if (place.has("timeout")) suite.timeout_seconds = place["timeout"].number(0.001, 1e6);
-  if (place.has("collapse")) suite.collapse_f5 = place["collapse"].number(0, 100);
-  if (place.has("keep")) suite.keep = place["keep"].boolean();
   if (place.has("axes"))
     read_axes(place["axes"], &suite);
   else if (suite.scenes.empty())
@@ -282,6 +277,14 @@ std::optional<double> level_number(const std::string& level) {
   const double number = std::strtod(level.c_str(), &end);
   if (level.empty() || *end != '\0') return std::nullopt;
   return number;
+}
+
+Suite suite_of_folders(const std::vector<std::string>& folders) {
+  Suite suite;
+  suite.keep = true;
+  for (const std::string& folder : folders) suite.scenes.push_back(folder_scene(folder));
+  tell_apart(&suite.scenes);
+  return suite;
 }
 
 Suite read_suite(const std::string& path) {

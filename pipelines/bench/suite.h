@@ -35,23 +35,17 @@ std::vector<BenchVariant> ablation_variants();
 /// left out or exchanged at a time, beside the detector "image"; else ablation_variants().
 std::vector<BenchVariant> ablation_variants_of(const std::vector<std::string>& detectors);
 
-/// What is reported of an axis.
-enum class AxisReport {
-  kDrop,      ///< where accuracy falls
-  kConstant,  ///< by how much results differ although they should not
-  kExponent,  ///< how time and memory grow
-};
-
-/// One thing that is varied while all others stay.
+/// One option that is varied while all others stay.
 struct BenchAxis {
   std::string name, title;
   bool of_reconstruct = false;      ///< the option is one of reconstruct, else of synthesize
   std::string option;               ///< "noise", or "param.gap": --param gap=LEVEL
-  std::vector<std::string> levels;  ///< from harmless to hopeless, as options' values; numbers, or
-                                    ///< true and false, where accuracy is to fall
+  std::vector<std::string> levels;  ///< from harmless to hopeless, as options' values
   bool in_pixels = false;  ///< levels are pixels of the image; the option is a share of the object
   bool log = false;        ///< levels are compared by their ratio
-  AxisReport report = AxisReport::kDrop;
+  /// What eval/charts.py reports: "drop" (where accuracy falls; levels are numbers, or true and
+  /// false), "constant" (whether results differ) or "exponent" (how time and memory grow).
+  std::string report = "drop";
   std::string against;  ///< number of a row that stands for the level in a report of exponents
   std::vector<BenchScene> scenes;       ///< instead of the suite's; empty: the same
   std::vector<std::string> part_seeds;  ///< seeds of the synthesized parts; empty: the suite's
@@ -60,25 +54,25 @@ struct BenchAxis {
 
 struct Suite {
   std::string name = "bench";
-  std::string path;  ///< of its file; empty if it was made otherwise
   std::vector<BenchScene> scenes;
   std::vector<BenchVariant> variants = preset_variants(preset_names());
-  std::vector<int> seeds = {0};                 ///< of reconstruct
   std::vector<std::string> part_seeds = {"1"};  ///< of the synthesized parts
   OptionTexts synthesize, reconstruct;          ///< of all scenes; of all runs
   std::vector<BenchAxis> axes;                  ///< none: each scene as it is
   int repeats = 1;                              ///< of each run; the fastest counts
   double timeout_seconds = 3600;                ///< of a run
-  double collapse_f5 = 20;  ///< an axis ends when no part is above it [per cent]
-  bool keep = false;        ///< the results of the runs, too, not their numbers alone
+  bool keep = false;  ///< the results of the runs, too, not their numbers alone
 };
 
 /// What stands for a level in tables and charts: its number, 1 for "true", 0 for "false"; nothing
 /// for any other text.
 std::optional<double> level_number(const std::string& level);
 
-/// Reads a suite file (YAML or JSON; the format is in README.md under "Suites"). Paths in it are
-/// relative to it. Throws InputError (the file, the line, what was expected, what was found).
+/// All presets on these scenes; results are kept.
+Suite suite_of_folders(const std::vector<std::string>& folders);
+
+/// Reads a suite file (YAML or JSON; eval/suites/stability.yml describes the format). Paths in it
+/// are relative to it. Throws InputError (the file, the line, what was expected, what was found).
 Suite read_suite(const std::string& path);
 
 /// Sets options as a command line of that verb with these would, to check names and ranges.

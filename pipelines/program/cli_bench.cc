@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
 
-#include "pipelines/base/atomic_file.h"
-#include "pipelines/bench/accuracy_chart.h"
-#include "pipelines/bench/axis_report.h"
+#include "pipelines/bench/charts.h"
 #include "pipelines/bench/run.h"
 #include "pipelines/command/cli.h"
 
@@ -45,31 +42,12 @@ OptionTexts option_texts(const std::string& text) {
   return options;
 }
 
-// A suite of the scenes on the command line.
-Suite suite_of_scenes(const std::string& scenes) {
-  Suite suite;
-  suite.keep = true;
-  for (const std::string& folder : split(scenes, '\n')) {
-    const std::filesystem::path path = std::filesystem::path(folder + "/.").lexically_normal();
-    const std::string stem = path.parent_path().filename();
-    const auto taken = [&](const std::string& name) {
-      for (const BenchScene& scene : suite.scenes)
-        if (scene.name == name) return true;
-      return false;
-    };
-    std::string name = stem;
-    for (int k = 2; taken(name); ++k) name = stem + "_" + std::to_string(k);
-    suite.scenes.push_back({name, folder, "", {}});
-  }
-  return suite;
-}
-
 // Wrong options are said before hours of work, not after.
 Suite suite_of(const BenchArguments& arguments) {
   if (arguments.suite.empty() == arguments.scenes.empty())
     throw UsageError("bench needs either SCENES or --suite FILE");
-  Suite suite =
-      arguments.suite.empty() ? suite_of_scenes(arguments.scenes) : read_suite(arguments.suite);
+  Suite suite = arguments.suite.empty() ? suite_of_folders(split(arguments.scenes, '\n'))
+                                        : read_suite(arguments.suite);
   if (!arguments.presets.empty() || !arguments.detectors.empty()) {
     const std::vector<std::string> presets = split(arguments.presets, ','),
                                    detectors = split(arguments.detectors, ',');
@@ -88,84 +66,32 @@ Suite suite_of(const BenchArguments& arguments) {
   return suite;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  write_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
-// Results of one axis stand together.
-template <typename Result, typename Draw>
-void write_axis_charts(const std::vector<Result>& results, const std::string& folder, Draw draw) {
-  for (size_t i = 0; i < results.size();) {
-    std::vector<Result> axis;
-    for (; i < results.size() && (axis.empty() || results[i].axis == axis[0].axis); ++i)
-      axis.push_back(results[i]);
-    write_chart(draw(axis), folder + "/" + axis[0].axis->name);
+// Every row and the means over the scenes, or of axes the means of each level.
+std::string report(const std::vector<BenchRow>& runs, const Suite& suite) {
+  std::vector<std::string> columns = {"F5", "F5_visible", "F2", "F1", "fine_F1", "acc"};
+  std::vector<BenchRow> rows;
+  if (suite.axes.empty()) {
+    rows = runs;
+    columns.insert(columns.end(), {"fine_F2", "comp", "structure_strokes", "peak_mb"});
   }
-}
-
-std::string report_axes(const Suite& suite, const std::vector<BenchRow>& rows,
-                        const std::string& out) {
-  const std::vector<AxisResult> limits = axis_results(suite, rows);
-  const std::vector<GrowthResult> growth = growth_results(suite, rows);
-  std::string tables;
-  if (!limits.empty()) {
-    write_text(out + "/limits.md", limits_markdown(limits));
-    write_text(out + "/limits.csv", limits_csv(limits));
-    write_axis_charts(limits, out, axis_chart);
-    tables += limits_markdown(limits);
-  }
-  if (!growth.empty()) {
-    write_text(out + "/growth.md", growth_markdown(growth));
-    write_text(out + "/growth.csv", growth_csv(growth));
-    write_axis_charts(growth, out, growth_chart);
-    tables += growth_markdown(growth);
-  }
-  return tables;
-}
-
-std::string report_scenes(const std::vector<BenchRow>& runs, const std::string& out,
-                          bool ablation) {
-  write_chart(accuracy_chart(runs), out + "/chart");
-  const std::vector<BenchRow> means = mean_rows(runs);
-  std::vector<BenchRow> rows = runs;
-  rows.insert(rows.end(), means.begin(), means.end());
-  std::vector<std::string> columns = {"F5", "F2", "F1", "fine_F2", "fine_F1", "acc", "comp"};
-  const std::vector<std::string> rest =
-      ablation ? std::vector<std::string>{"structure_strokes", "structure_strokes_per_edge",
-                                          "structure_f", "total", "cpu_seconds"}
-               : std::vector<std::string>{"structure_strokes_per_edge",
-                                          "structure_f",
-                                          "detect",
-                                          "hull",
-                                          "lift",
-                                          "fit",
-                                          "round",
-                                          "polish",
-                                          "write",
-                                          "total",
-                                          "total_per_decode",
-                                          "peak_mb"};
-  columns.insert(columns.end(), rest.begin(), rest.end());
-  const std::string solids = solid_counts(runs);
-  if (!solids.empty())
-    columns.insert(columns.end(), {"solid_right", "solid_wrong", "solid_refused"});
-  return bench_table(rows, columns) + (solids.empty() ? "" : "\n" + solids);
+  columns.insert(columns.end(), {"structure_strokes_per_edge", "structure_f", "solid_right",
+                                 "solid_wrong", "total", "cpu_seconds", "total_per_decode"});
+  for (const BenchRow& mean : mean_rows(runs)) rows.push_back(mean);
+  return bench_table(rows, columns);
 }
 
 void run_bench_verb(const BenchArguments& arguments, const CommonOptions& common,
                     Progress* progress) {
   BenchRun run;
   run.suite = suite_of(arguments);
-  if (arguments.suite.empty()) run.suite.seeds = {common.seed};
   run.with = option_texts(arguments.with);
+  run.with.insert(run.with.begin(), {"seed", std::to_string(common.seed)});
   run.out = arguments.out;
   run.scenes = arguments.scene_folder;
   run.threads = common.threads;
   const std::vector<BenchRow> rows = run_suite(run, progress);
-  const bool scenes = run.suite.axes.empty();
-  const std::string tables = scenes ? report_scenes(rows, run.out, arguments.ablation)
-                                    : report_axes(run.suite, rows, run.out);
-  std::cout << (common.json ? bench_json(rows, run.suite.name) : tables);
+  write_charts(run.out, progress);
+  std::cout << (common.json ? bench_json(rows, run.suite) : report(rows, run.suite));
 }
 
 }  // namespace

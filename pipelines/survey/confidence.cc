@@ -80,7 +80,7 @@ std::vector<StrokeFeatures> stroke_features(const Sketch& sketch, const EdgeWorl
 }
 
 // The numbers are from
-//   eval/calibrate_confidence.py --binary build/pipelines/sketchsplat --work DIR
+//   eval/calibrate_confidence.py --binary build/pipelines/sketchsplat --work DIR (commit ac10b3a)
 // which makes 150 scenes of 30 built-in parts (plain, textured, 8 views, glossy from above, wrong
 // poses), fits on 20 parts and prints reliability and Brier score on the other 10. It chooses at
 // most five of the features; scatter, length, cover, width and the like add nothing to these.
