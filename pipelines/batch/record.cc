@@ -6,31 +6,25 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "datasets/types/errors.h"
 #include "pipelines/base/atomic_file.h"
-#include "pipelines/batch/thumbnail.h"
+#include "pipelines/batch/numbers_json.h"
 #include "sketches/io/json.h"
 
 namespace sketchsplat {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr char kName[] = "batch.json";
+constexpr char kName[] = "/batch.json";
 
-// What of the evaluation is told: keys of `evaluate --json`, with their objects.
-const std::vector<std::string> kScores = {"F5",
-                                          "F10",
-                                          "F20",
-                                          "acc",
-                                          "comp",
-                                          "fine.F5",
-                                          "fine.F2",
-                                          "fine.F1",
-                                          "structure.f",
-                                          "structure.strokes_per_edge",
-                                          "structure.right_type"};
+// What summaries show: of report.json's counts, and of `evaluate --json`.
+constexpr char kCounts[] =
+    "views curves lines arcs circles ellipses elliptic_arcs beziers junctions";
+constexpr char kScores[] =
+    "F5 F10 F20 acc comp fine/F5 fine/F2 fine/F1 structure/f structure/strokes_per_edge "
+    "structure/right_type";
 
 std::string dump(const Json& json) { return json_text(json, 1) + "\n"; }
 
@@ -52,35 +46,40 @@ Numbers numbers_in(const Json& object) {
   return numbers;
 }
 
-Json object_of(const Numbers& numbers) {
-  Json object = Json::object();
-  for (const auto& [name, value] : numbers) {
-    if (!std::isfinite(value))
-      object[name] = Json();
-    else if (std::nearbyint(value) == value && std::abs(value) < 1e15)
-      object[name] = std::int64_t(value);
-    else
-      object[name] = value;
-  }
-  return object;
-}
-
 Json json_of(const SceneKey& key) { return {{"program", key.program}, {"input", key.input}}; }
 
 SceneKey key_in(const Json& json) { return {json.at("program"), json.at("input")}; }
 
-Numbers scores_in(const Json& evaluation) {
-  Numbers scores;
-  for (const std::string& key : kScores) {
-    const size_t dot = key.find('.');
-    const Json* at = &evaluation;
-    if (dot != std::string::npos) at = &evaluation.at(key.substr(0, dot));
-    const std::string name = key.substr(dot == std::string::npos ? 0 : dot + 1);
-    if (!at->is_object() || !at->contains(name)) continue;  // samples alone have no structure
-    const Json& value = (*at)[name];
-    if (value.is_number()) scores.push_back({key, value.get<double>()});
+// What an object holds of these paths, with "." for "/" in their names.
+Numbers numbers_at(const Json& object, const char* paths) {
+  Numbers numbers;
+  std::istringstream in(paths);
+  for (std::string path; in >> path;) {
+    const Json::json_pointer pointer("/" + path);
+    if (!object.contains(pointer) || !object[pointer].is_number()) continue;
+    std::replace(path.begin(), path.end(), '/', '.');
+    numbers.push_back({path, object[pointer].get<double>()});
   }
-  return scores;
+  return numbers;
+}
+
+// A record that is not there, or that is broken, has no key.
+SceneRecord read_record(const std::string& folder) {
+  SceneRecord record;
+  try {
+    const Json json = read_json(folder + kName);
+    record.format = json.at("format");
+    record.counts = numbers_in(json.at("counts"));
+    record.warnings = json.at("warnings");
+    record.scores = numbers_in(json.at("scores"));
+    record.note = json.at("note");
+    for (const auto& [name, size] : json.at("files").items())
+      record.files.push_back({name, size.get_ref<const Json::number_unsigned_t&>()});
+    record.key = key_in(json.at("key"));
+  } catch (const std::exception&) {
+    return {};
+  }
+  return record;
 }
 
 }  // namespace
@@ -90,13 +89,12 @@ SceneRecord make_record(const std::string& folder, const std::string& evaluation
   try {
     const Json report = read_json(folder + "/report.json");
     record.format = report.at("scene").at("format");
-    record.counts = numbers_in(report.at("counts"));
+    record.counts = numbers_at(report.at("counts"), kCounts);
     record.warnings = int(report.at("warnings").size());
-    if (!evaluation.empty()) record.scores = scores_in(read_json(evaluation));
+    if (!evaluation.empty()) record.scores = numbers_at(read_json(evaluation), kScores);
   } catch (const Json::exception& e) {
     throw InputError(folder + "/report.json", "a report of sketchsplat", e.what());
   }
-  record.thumbnail = thumbnail_path(folder + "/parametric_edges.json");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file())
       record.files.push_back({entry.path().filename().string(), entry.file_size()});
@@ -106,33 +104,13 @@ SceneRecord make_record(const std::string& folder, const std::string& evaluation
 
 void write_record(const std::string& folder, const SceneRecord& record) {
   Json json = {{"program", "sketchsplat"}, {"key", json_of(record.key)}, {"format", record.format}};
-  json["counts"] = object_of(record.counts);
+  json["counts"] = numbers_json(record.counts);
   json["warnings"] = record.warnings;
-  json["scores"] = object_of(record.scores);
+  json["scores"] = numbers_json(record.scores);
   json["note"] = record.note;
-  json["thumbnail"] = record.thumbnail;
   json["files"] = Json::object();
   for (const auto& [name, size] : record.files) json["files"][name] = size;
-  write_atomically(folder + "/" + kName, [&](std::ostream& out) { out << dump(json); });
-}
-
-SceneRecord read_record(const std::string& folder) {
-  SceneRecord record;
-  try {
-    const Json json = read_json(folder + "/" + kName);
-    record.format = json.at("format");
-    record.counts = numbers_in(json.at("counts"));
-    record.warnings = json.at("warnings");
-    record.scores = numbers_in(json.at("scores"));
-    record.note = json.at("note");
-    record.thumbnail = json.at("thumbnail");
-    for (const auto& [name, size] : json.at("files").items())
-      record.files.push_back({name, size.get_ref<const Json::number_unsigned_t&>()});
-    record.key = key_in(json.at("key"));
-  } catch (const std::exception&) {
-    return {};
-  }
-  return record;
+  write_atomically(folder + kName, [&](std::ostream& out) { out << dump(json); });
 }
 
 bool is_done(const std::string& folder, const SceneKey& key, SceneRecord* record) {
@@ -144,6 +122,7 @@ bool is_done(const std::string& folder, const SceneKey& key, SceneRecord* record
                           fs::file_size(fs::path(folder) / file.first, error);
                       return !error && size == file.second;
                     });
+  found.files.clear();
   if (done && record) *record = std::move(found);
   return done;
 }

@@ -23,29 +23,26 @@ struct SceneKey {
   }
 };
 
-/// What stands in batch.json of a scene's result: the same for the same input, options and version.
+/// batch.json of a scene's result: the same for the same input, options and version.
 struct SceneRecord {
   SceneKey key;
   std::vector<std::pair<std::string, std::uint64_t>> files;  ///< names and sizes of the others
   std::string format;
-  Numbers counts;         ///< of report.json
-  int warnings = 0;       ///< in report.json
-  Numbers scores;         ///< of `evaluate`; empty if there is no truth
-  std::string note;       ///< why there is no score although there is a truth; empty if all is well
-  std::string thumbnail;  ///< path data of an SVG of 100 x 100
+  Numbers counts;    ///< of report.json: views, curves of each kind and junctions
+  int warnings = 0;  ///< in report.json
+  Numbers scores;    ///< of `evaluate`; empty if there is no truth
+  std::string note;  ///< why there is no score although there is a truth; empty if all is well
 };
 
 /// Reads what a reconstruction wrote into the folder, and the file of `evaluate --json` (may be
 /// empty). The key is left open. Throws InputError if something is missing.
 SceneRecord make_record(const std::string& folder, const std::string& evaluation);
 
-/// Writes and reads batch.json of the folder. A record that is not there, or that is broken, has no
-/// key and matches none. Throws OutputError.
+/// Writes batch.json of the folder. Throws OutputError.
 void write_record(const std::string& folder, const SceneRecord& record);
-SceneRecord read_record(const std::string& folder);
 
 /// Whether the folder holds a record that matches the key, and the files that it names, of their
-/// sizes. The record goes to `record` if that is not null.
+/// sizes. The record goes to `record`, without its files, if that is not null.
 bool is_done(const std::string& folder, const SceneKey& key, SceneRecord* record = nullptr);
 
 /// How the last run of a scene went: differs from run to run.

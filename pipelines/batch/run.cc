@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <ctime>
-#include <functional>
 #include <list>
 #include <memory>
 
@@ -15,7 +15,6 @@
 #include "pipelines/base/resources.h"
 #include "pipelines/base/version.h"
 #include "pipelines/batch/scene_input.h"
-#include "pipelines/batch/signals.h"
 #include "pipelines/batch/worker.h"
 #include "pipelines/bench/plan.h"
 #include "pipelines/method/estimate.h"
@@ -23,9 +22,8 @@
 namespace sketchsplat {
 namespace {
 
-constexpr double kMemoryShare = 0.9;     // of what is available
-constexpr double kPatienceSeconds = 60;  // with a scene whose size is asked for
-constexpr double kTickSeconds = 10;      // between looks at workers, if nothing happens
+constexpr double kMemoryShare = 0.9;  // of what is available
+constexpr double kTickSeconds = 10;   // between looks at workers, if nothing happens
 
 void list_all(ReconstructOptions* method, OutputOptions* output, Fields* fields) {
   fields->add("seed", &method->seed, "", 0, HUGE_VAL, "");
@@ -75,20 +73,43 @@ std::string host_name() {
   return name;
 }
 
+// While it lives, SIGCHLD and the signals by which people and systems end programs are kept until
+// somebody asks for them: they cannot strike in the middle of anything. Of a program with one
+// thread at that time.
+class KeptSignals {
+ public:
+  KeptSignals() {
+    std::signal(SIGCHLD, SIG_DFL);  // whoever started us may have had it ignored
+    sigemptyset(&kept_);
+    for (const int number : {SIGCHLD, SIGINT, SIGTERM, SIGHUP}) sigaddset(&kept_, number);
+    pthread_sigmask(SIG_BLOCK, &kept_, &before_);
+  }
+  ~KeptSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+  // Waits for one, at most so long; its number, or 0.
+  int wait(double seconds) const {
+    const double whole = std::floor(std::max(0.0, seconds));
+    const timespec time = {std::time_t(whole), long((seconds - whole) * 1e9)};
+    return std::max(0, sigtimedwait(&kept_, nullptr, &time));
+  }
+
+ private:
+  sigset_t kept_, before_;
+};
+
 // Starts workers, looks after them, and writes down how they ended.
 class Coordinator {
  public:
-  Coordinator(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, const BatchRun& run,
-              const BatchStore& store, Progress* progress)
-      : scenes_(scenes),
-        plan_(plan),
-        run_(run),
+  Coordinator(const BatchGroup& group, const BatchStore& store, Progress* progress)
+      : scenes_(group.scenes),
+        plan_(plan_batch(group, progress)),
         store_(store),
         progress_(progress),
-        schedule_(plan.loads, plan.jobs, plan.memory_mb),
-        settings_{worker_flags(run), run.memory_mb, run.timeout_seconds},
-        attempts_(plan.open.size()) {
-    for (const Load& load : plan.loads) all_seconds_ += load.seconds;
+        schedule_(plan_.loads, plan_.jobs, plan_.memory_mb),
+        settings_{worker_flags(group.run), group.run.memory_mb, group.run.timeout_seconds},
+        retries_(group.run.retries),
+        attempts_(plan_.open.size()) {
+    for (const Load& load : plan_.loads) all_seconds_ += load.seconds;
   }
 
   // Nothing half done stays, whatever ends us.
@@ -151,7 +172,7 @@ class Coordinator {
       const std::unique_ptr<SceneWorker> worker = std::move(work->worker);
       workers_.erase(work);
       schedule_.ended(piece, worker->run().peak_mb);
-      if (worker->was_struck() && attempts_[piece] <= run_.retries)
+      if (worker->was_struck() && attempts_[piece] <= retries_)
         schedule_.again(piece);
       else
         write_down(piece, worker->run(), stage);
@@ -188,17 +209,23 @@ class Coordinator {
   }
 
   const std::vector<PlannedScene>& scenes_;
-  const BatchPlan& plan_;
-  const BatchRun& run_;
+  const BatchPlan plan_;
   const BatchStore& store_;
   Progress* progress_;
   Schedule schedule_;
   const WorkerSettings settings_;
+  const int retries_;
   std::vector<int> attempts_;
   std::list<Work> workers_;
   int ended_ = 0, failed_ = 0;
   double all_seconds_ = 0, done_seconds_ = 0;
 };
+
+// What decides a scene's result beside its input.
+std::string program_text(const BatchRun& run) {
+  return program_version() + "\n" + program_commit() + "\n" + run.open.format +
+         (run.open.allow_outside ? " and beyond\n" : "\n") + batch_options_json(run);
+}
 
 }  // namespace
 
@@ -209,16 +236,6 @@ std::string batch_options_json(const BatchRun& run) {
   list_all(&method, &output, &fields);
   return fields_json(fields.list);
 }
-
-namespace {
-
-// What decides a scene's result beside its input.
-std::string program_text(const BatchRun& run) {
-  return program_version() + "\n" + program_commit() + "\n" + run.open.format +
-         (run.open.allow_outside ? " and beyond\n" : "\n") + batch_options_json(run);
-}
-
-}  // namespace
 
 std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, const BatchRun& run) {
   const std::string program = program_text(run);
@@ -232,60 +249,49 @@ std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, con
   return planned;
 }
 
-FamilyBatches family_batches(const std::vector<PlannedScene>& scenes, const BatchRun& run) {
-  const size_t first = std::min(scenes.size(), size_t(run.family));
-  FamilyBatches out;
-  out.first.assign(scenes.begin(), scenes.begin() + first);
-  out.rest.assign(scenes.begin() + first, scenes.end());
-  out.run = run;
-  out.run.method.like_folder = run.out;
+std::vector<BatchGroup> batch_groups(const std::vector<PlannedScene>& scenes, const BatchRun& run) {
+  if (run.family == 0) return {{scenes, run}};
+  const auto middle = scenes.begin() + std::min(scenes.size(), size_t(run.family));
+  BatchGroup first = {{scenes.begin(), middle}, run}, rest = {{middle, scenes.end()}, run};
+  rest.run.method.like_folder = run.out;
   std::string siblings;
-  for (const PlannedScene& s : out.first) {
+  for (const PlannedScene& s : first.scenes) {
     const std::string folder = run.out + "/" + s.scene.name;
     if (!is_done(folder, s.key)) continue;
-    out.run.method.like += (siblings.empty() ? "" : "\n") + s.scene.name;
+    rest.run.method.like += (siblings.empty() ? "" : "\n") + s.scene.name;
     siblings += hash_of_file(folder + "/sketch.json") + "\n";
   }
-  if (siblings.empty()) return out;  // cold, as they are keyed
-  const std::string program = hash_of(program_text(out.run) + siblings);
-  for (PlannedScene& s : out.rest) s.key.program = program;
-  return out;
+  // Without siblings they are done cold, as they are keyed.
+  if (!siblings.empty())
+    for (PlannedScene& s : rest.scenes) s.key.program = hash_of(program_text(rest.run) + siblings);
+  return {first, rest};
 }
 
-BatchPlan plan_batch(const std::vector<PlannedScene>& scenes, const BatchRun& run,
-                     Progress* progress) {
+BatchPlan plan_batch(const BatchGroup& group, Progress* progress) {
+  const BatchRun& run = group.run;
+  const int count = int(group.scenes.size());
   BatchPlan plan;
-  std::vector<BatchScene> open;
-  for (size_t i = 0; i < scenes.size(); ++i) {
-    if (!run.force && is_done(run.out + "/" + scenes[i].scene.name, scenes[i].key)) continue;
-    plan.open.push_back(int(i));
-    open.push_back(scenes[i].scene);
-  }
-  if (open.empty()) return plan;
-  Stage stage("look", {nullptr, progress}, int(open.size()));
-  for (const SceneSize& size : scene_sizes(open, run.open, kPatienceSeconds, [&] { stage.step(); }))
+  for (int i = 0; i < count; ++i)
+    if (run.force || !is_done(run.out + "/" + group.scenes[i].scene.name, group.scenes[i].key))
+      plan.open.push_back(i);
+  const int open = int(plan.open.size());
+  if (open == 0) return plan;
+  Stage stage("look", {nullptr, progress}, open);
+  for (const int i : plan.open) {
+    const SceneSize size = scene_size(group.scenes[i].scene.folder, run.open);
     plan.loads.push_back(expected_load(size.views, size.pixels, run.method, run.threads));
-  const int places = run.jobs > 0 ? run.jobs : std::max(1, usable_cores() / run.threads);
-  plan.jobs = std::min(places, int(open.size()));
+    stage.step();
+  }
+  plan.jobs = std::min(open, run.jobs > 0 ? run.jobs : std::max(1, usable_cores() / run.threads));
   plan.memory_mb = run.jobs > 0 ? HUGE_VAL : kMemoryShare * usable_memory_mb();
-  stage.result(std::to_string(open.size()) + " of " + std::to_string(scenes.size()) +
-               " scenes to do, " + std::to_string(plan.jobs) + " at a time");
+  stage.result(std::to_string(open) + " of " + std::to_string(count) + " scenes to do, " +
+               std::to_string(plan.jobs) + " at a time");
   return plan;
 }
 
-double expected_seconds(const BatchPlan& plan) {
-  double sum = 0, longest = 0;
-  for (const Load& load : plan.loads) {
-    sum += load.seconds;
-    longest = std::max(longest, load.seconds);
-  }
-  return std::max(longest, sum / plan.jobs);
-}
-
-void run_batch(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, const BatchRun& run,
-               const BatchStore& store, Progress* progress) {
-  for (const PlannedScene& scene : scenes) store.check_place(scene.scene.name);
-  Coordinator(scenes, plan, run, store, progress).work();
+void run_batch(const BatchGroup& group, const BatchStore& store, Progress* progress) {
+  for (const PlannedScene& scene : group.scenes) store.check_place(scene.scene.name);
+  Coordinator(group, store, progress).work();
 }
 
 }  // namespace sketchsplat

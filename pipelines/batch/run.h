@@ -39,20 +39,22 @@ struct PlannedScene {
   SceneKey key;
 };
 
-/// With --family, scenes come in two batches: the first ones, cold, then the others, like those of
-/// them that are done. So which siblings a scene has depends neither on who is ready first nor on
-/// what was done before.
-struct FamilyBatches {
-  std::vector<PlannedScene> first, rest;
-  BatchRun run;  ///< of the rest
-};
-FamilyBatches family_batches(const std::vector<PlannedScene>& scenes, const BatchRun& run);
-
 /// All options of reconstruct as JSON, as reports state them.
 std::string batch_options_json(const BatchRun& run);
 
 /// Looks at what the scenes hold.
 std::vector<PlannedScene> plan_scenes(const std::vector<BatchScene>& scenes, const BatchRun& run);
+
+/// Scenes that are done alike, before those of the next group.
+struct BatchGroup {
+  std::vector<PlannedScene> scenes;
+  BatchRun run;
+};
+
+/// Without a family one group. With run.family two: the first scenes, cold, and all others, like
+/// those of the first that are done by now. So which siblings a scene has depends neither on who is
+/// ready first nor on what was done before.
+std::vector<BatchGroup> batch_groups(const std::vector<PlannedScene>& scenes, const BatchRun& run);
 
 /// What is left to do, how long it will take and how much memory, roughly.
 struct BatchPlan {
@@ -61,11 +63,7 @@ struct BatchPlan {
   int jobs = 1;             ///< workers at a time
   double memory_mb = 0;     ///< of all of them together, at the most
 };
-BatchPlan plan_batch(const std::vector<PlannedScene>& scenes, const BatchRun& run,
-                     Progress* progress);
-
-/// Seconds of wall clock that a plan takes, roughly.
-double expected_seconds(const BatchPlan& plan);
+BatchPlan plan_batch(const BatchGroup& group, Progress* progress);
 
 /// Somebody wants the program to end: nothing is half done, and it can go on later.
 struct Interrupted : std::runtime_error {
@@ -73,10 +71,9 @@ struct Interrupted : std::runtime_error {
   int number;  ///< of the signal
 };
 
-/// Reconstructs what is open, each scene in processes of its own, and says how each ended: their
-/// rows are in the store then. Throws OutputError (the folder cannot be written, for any scene),
-/// Interrupted (SIGINT, SIGTERM or SIGHUP came).
-void run_batch(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, const BatchRun& run,
-               const BatchStore& store, Progress* progress);
+/// Reconstructs what is open, each scene in processes of its own, and records how each ended.
+/// Throws OutputError (the folder cannot be written, for any scene), Interrupted (SIGINT, SIGTERM
+/// or SIGHUP came).
+void run_batch(const BatchGroup& group, const BatchStore& store, Progress* progress);
 
 }  // namespace sketchsplat

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <functional>
 #include <string>
-#include <vector>
 
 #include "datasets/readers/open_options.h"
-#include "pipelines/batch/scene_list.h"
 
 namespace sketchsplat {
 
@@ -23,11 +20,6 @@ struct SceneSize {
   int views = 0;      ///< 0: the scene cannot be opened
   double pixels = 0;  ///< of all views
 };
-
-/// Opens the scenes in a child process, as strangers' files may end it; what it dies of, or takes
-/// longer than `patience_seconds` for, has no size. `step` is called after each.
-std::vector<SceneSize> scene_sizes(const std::vector<BatchScene>& scenes,
-                                   const OpenOptions& options, double patience_seconds,
-                                   const std::function<void()>& step);
+SceneSize scene_size(const std::string& folder, const OpenOptions& options);
 
 }  // namespace sketchsplat

@@ -65,13 +65,6 @@ class Walk {
   std::set<fs::path> seen_;
 };
 
-fs::path common_folder(const fs::path& a, const fs::path& b) {
-  fs::path common;
-  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end() && *i == *j; ++i, ++j)
-    common /= *i;
-  return common;
-}
-
 // The folder from which names are counted.
 fs::path base_of(const SceneSearch& search) {
   const bool one = search.roots.size() == 1 && search.list.empty();
@@ -79,8 +72,11 @@ fs::path base_of(const SceneSearch& search) {
   fs::path base;
   for (const std::vector<std::string>* folders : {&search.roots, &search.list})
     for (const std::string& folder : *folders) {
-      const fs::path above = full_path(folder).parent_path();
-      base = base.empty() ? above : common_folder(base, above);
+      const fs::path above = full_path(folder).parent_path(), last = base.empty() ? above : base;
+      base.clear();
+      for (auto i = last.begin(), j = above.begin();
+           i != last.end() && j != above.end() && *i == *j; ++i, ++j)
+        base /= *i;
     }
   return base;
 }

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -27,18 +28,25 @@ void make_folders(const fs::path& folder) {
   check(error, folder.string());
 }
 
+void remove_all(const std::string& place) {
+  std::error_code error;
+  fs::remove_all(place, error);
+  check(error, place);
+}
+
+// With the folders above the new place.
+void move(const std::string& from, const std::string& to) {
+  make_folders(fs::path(to).parent_path());
+  std::error_code error;
+  fs::rename(from, to, error);
+  check(error, to);
+}
+
 // Removes the folders between `root` and what was in it, as far as they are empty.
 void remove_empty(const fs::path& root, const fs::path& name) {
   std::error_code error;
   for (fs::path above = name.parent_path(); !above.empty(); above = above.parent_path())
     if (!fs::remove(root / above, error)) return;
-}
-
-// Whoever holds the lock has written its name into it.
-std::string holder(int file) {
-  char text[128] = {};
-  const ssize_t n = pread(file, text, sizeof text - 1, 0);
-  return n > 0 ? " (" + std::string(text, size_t(n)) + ")" : "";
 }
 
 std::string own_name() {
@@ -47,26 +55,18 @@ std::string own_name() {
   return "process " + std::to_string(getpid()) + " on " + host;
 }
 
-std::string shard_lock(int index, int count) {
-  return "lock." + std::to_string(index) + "-of-" + std::to_string(count);
-}
-
 }  // namespace
 
-BatchStore::BatchStore(const std::string& out, const Shard& shard) : out_(out), shard_(shard) {
+BatchStore::BatchStore(const std::string& out, const Shard& shard) : out_(out) {
   prepare_output_folder(own(""));
-  const bool shared = shard.count > 1;
-  lock("lock", shared);
-  if (shared) {
-    lock(shard_lock(shard.index, shard.count), false);
-    refuse_other_counts(shard.count);
+  if (shard.count > 1) {
+    lock("lock", "shards of " + std::to_string(shard.count));
+    lock("lock." + std::to_string(shard.index), "");
   } else {
+    lock("lock", "");
     // Nobody else is here: what is left was left by a batch that was ended.
-    std::error_code error;
-    fs::remove_all(own("running"), error);
-    check(error, own("running"));
-    fs::remove_all(own("trash"), error);
-    check(error, own("trash"));
+    remove_all(own("running"));
+    remove_all(own("trash"));
   }
 }
 
@@ -74,55 +74,28 @@ BatchStore::~BatchStore() {
   for (const int file : locks_) close(file);
 }
 
-void BatchStore::lock(const std::string& name, bool shared) {
+// A lock for one process, or shared by those that give the same text: whoever is first writes it
+// into the file. Shards of 1/2 and of 1/3 would work on the same scenes.
+void BatchStore::lock(const std::string& name, const std::string& shared_by) {
   const int file = open(own(name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) throw OutputError(own(name), std::strerror(errno));
   locks_.push_back(file);
-  if (flock(file, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK) throw OutputError(own(name), std::strerror(errno));
-    throw OutputError(out_, "another batch at work there" + holder(file));
+  const std::string text = shared_by.empty() ? own_name() : shared_by;
+  char holder[128] = {};
+  for (int tries = shared_by.empty() ? 1 : 50; tries > 0; --tries) {  // others may be writing
+    const bool alone = flock(file, LOCK_EX | LOCK_NB) == 0;
+    if (!alone && errno != EWOULDBLOCK) throw OutputError(own(name), std::strerror(errno));
+    if (alone && (ftruncate(file, 0) != 0 ||
+                  pwrite(file, text.data(), text.size(), 0) != ssize_t(text.size())))
+      throw OutputError(own(name), std::strerror(errno));
+    if (alone && shared_by.empty()) return;
+    const bool shared = !shared_by.empty() && flock(file, LOCK_SH | LOCK_NB) == 0;
+    holder[std::max<ssize_t>(0, pread(file, holder, sizeof holder - 1, 0))] = 0;
+    if (shared && holder == text) return;
+    if (shared) break;
+    usleep(20000);
   }
-  const std::string text = shared ? "" : own_name();  // an older name would be a wrong one
-  if (ftruncate(file, 0) != 0 || pwrite(file, text.data(), text.size(), 0) != ssize_t(text.size()))
-    throw OutputError(own(name), std::strerror(errno));
-}
-
-// Shards of 1/2 and of 1/3 would work on the same scenes.
-void BatchStore::refuse_other_counts(int count) const {
-  const std::string ours = "-of-" + std::to_string(count);
-  for (const fs::directory_entry& entry : fs::directory_iterator(own(""))) {
-    const std::string name = entry.path().filename().string();
-    const size_t at = name.find("-of-");
-    if (name.rfind("lock.", 0) != 0 || at == std::string::npos || name.substr(at) == ours) continue;
-    const int file = open(entry.path().c_str(), O_RDWR | O_CLOEXEC);
-    if (file < 0) continue;
-    const bool held = flock(file, LOCK_EX | LOCK_NB) != 0;
-    const std::string who = holder(file);
-    close(file);
-    if (held) throw OutputError(out_, "a batch of another number of shards at work there" + who);
-  }
-}
-
-std::string BatchStore::running(const std::string& scene) const { return own("running/" + scene); }
-
-std::string BatchStore::make_running(const std::string& scene) const {
-  forget_running(scene);
-  make_folders(fs::path(running(scene)).parent_path());
-  return running(scene);
-}
-
-void BatchStore::forget_running(const std::string& scene) const {
-  std::error_code error;
-  fs::remove_all(running(scene), error);
-  check(error, running(scene));
-  remove_empty(own("running"), scene);
-}
-
-std::string BatchStore::notes(const std::string& scene) const { return own("scenes/" + scene); }
-
-std::string BatchStore::make_notes(const std::string& scene) const {
-  make_folders(notes(scene));
-  return notes(scene);
+  throw OutputError(out_, "another batch at work there (" + std::string(holder) + ")");
 }
 
 void BatchStore::check_place(const std::string& scene) const {
@@ -134,26 +107,36 @@ void BatchStore::check_place(const std::string& scene) const {
   throw OutputError(place.string(), "something that is no result and would be lost");
 }
 
+void BatchStore::begin(const std::string& scene) const {
+  forget_running(scene);
+  make_folders(fs::path(running(scene)).parent_path());
+  make_folders(notes(scene));
+}
+
+void BatchStore::forget_running(const std::string& scene) const {
+  remove_all(running(scene));
+  remove_empty(own("running"), scene);
+}
+
+// By way of the trash: it is whole, or not there.
+void BatchStore::remove_result(const std::string& scene) const {
+  std::error_code none;
+  if (!fs::exists(fs::symlink_status(result(scene), none))) return;
+  const std::string trash = own("trash/" + scene);
+  remove_all(trash);
+  move(result(scene), trash);
+  remove_all(trash);
+}
+
 void BatchStore::withdraw(const std::string& scene) const {
-  const fs::path place = result(scene), trash = own("trash/" + scene);
-  std::error_code error;
-  if (!fs::exists(fs::symlink_status(place, error))) return;
-  make_folders(trash.parent_path());
-  fs::remove_all(trash, error);
-  check(error, trash.string());
-  fs::rename(place, trash, error);
-  check(error, place.string());
-  fs::remove_all(trash, error);
-  check(error, trash.string());
+  forget_running(scene);
+  remove_result(scene);
   remove_empty(out_, scene);
 }
 
 void BatchStore::publish(const std::string& scene) const {
-  withdraw(scene);
-  make_folders(fs::path(result(scene)).parent_path());
-  std::error_code error;
-  fs::rename(running(scene), result(scene), error);
-  check(error, result(scene));
+  remove_result(scene);
+  move(running(scene), result(scene));
   remove_empty(own("running"), scene);
 }
 
@@ -161,13 +144,7 @@ void BatchStore::write_file(const std::string& name,
                             const std::function<void(std::ostream&)>& write) const {
   const std::string part = own(fs::path(name).filename().string() + ".new");
   write_atomically(part, write);
-  std::error_code error;
-  fs::rename(part, result(name), error);
-  check(error, result(name));
-}
-
-void BatchStore::write(const RunRecord& run, const std::string& scene) const {
-  write_run(make_notes(scene) + "/run.json", run);
+  move(part, result(name));
 }
 
 }  // namespace sketchsplat

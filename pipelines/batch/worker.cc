@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 
 #include "datasets/types/errors.h"
 #include "pipelines/batch/scene_input.h"
@@ -14,8 +13,6 @@
 
 namespace sketchsplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 // A folder that begins with a dash must not be taken for an option.
 std::string as_argument(const std::string& folder) {
@@ -40,14 +37,16 @@ bool was_sent(int status) {
 SceneWorker::SceneWorker(const BatchScene& scene, const SceneKey& key,
                          const WorkerSettings& settings, const BatchStore& store)
     : scene_(scene), key_(key), settings_(settings), store_(store) {
+  store_.begin(scene_.name);
   std::vector<std::string> arguments = {"reconstruct", as_argument(scene_.folder), "--out",
-                                        store_.make_running(scene_.name)};
+                                        store_.running(scene_.name)};
   arguments.insert(arguments.end(), settings_.flags.begin(), settings_.flags.end());
-  start(arguments, store_.make_notes(scene_.name) + "/reconstruct.log");
+  start(arguments);
 }
 
-void SceneWorker::start(const std::vector<std::string>& arguments, const std::string& log) {
-  child_ = std::make_unique<Child>(arguments, log, settings_.memory_mb);
+void SceneWorker::start(const std::vector<std::string>& arguments) {
+  child_ = std::make_unique<Child>(arguments, note((arguments[0] + ".log").c_str()),
+                                   settings_.memory_mb);
 }
 
 double SceneWorker::seconds() const {
@@ -66,46 +65,32 @@ bool SceneWorker::advance() {
   run_.cpu_seconds += result.cpu_seconds;
   run_.peak_mb = std::max(run_.peak_mb, result.peak_mb);
   run_.seconds = seconds();
-  return evaluating_ ? after_evaluation(result) : after_reconstruction(result);
-}
-
-bool SceneWorker::after_reconstruction(const ChildResult& result) {
-  if (result.status != 0) {
+  // An evaluation that was struck gets a score at another attempt.
+  const bool only_no_score = evaluating_ && (timed_out_ || !was_sent(result.status));
+  if (result.status != 0 && !only_no_score) {
     fail(result);
-    return true;
+  } else if (evaluating_) {
+    const bool scored = result.status == 0;
+    finish(scored, scored ? "" : "no score: " + reason_of(result, settings_.timeout_seconds));
+  } else if (has_truth(scene_.folder)) {
+    evaluating_ = true;
+    start({"evaluate", "--pred", store_.running(scene_.name), "--gt", as_argument(scene_.folder),
+           "--json", note("evaluation.json"), "--quiet"});
+    return false;
+  } else {
+    finish(false, "");
   }
-  if (begin_evaluation()) return false;
-  finish("", "");
-  return true;
-}
-
-bool SceneWorker::after_evaluation(const ChildResult& result) {
-  if (result.status == 0)
-    finish(evaluation(), "");
-  else if (was_sent(result.status) && !timed_out_)
-    fail(result);  // another attempt will get a score
-  else
-    finish("", "no score: " + reason_of(result, settings_.timeout_seconds));
   return true;
 }
 
 bool SceneWorker::was_struck() const { return was_sent(run_.status) && !timed_out_; }
 
-bool SceneWorker::begin_evaluation() {
-  if (!has_truth(scene_.folder)) return false;
-  evaluating_ = true;
-  start({"evaluate", "--pred", store_.running(scene_.name), "--gt", as_argument(scene_.folder),
-         "--json", evaluation(), "--quiet"},
-        store_.notes(scene_.name) + "/evaluate.log");
-  return true;
-}
-
-void SceneWorker::finish(const std::string& evaluation, const std::string& note) {
+void SceneWorker::finish(bool scored, const std::string& complaint) {
   const std::string folder = store_.running(scene_.name);
   try {
-    SceneRecord record = make_record(folder, evaluation);
+    SceneRecord record = make_record(folder, scored ? note("evaluation.json") : "");
     record.key = key_;
-    record.note = note;
+    record.note = complaint;
     write_record(folder, record);
   } catch (const InputError& e) {
     ChildResult defect;
@@ -115,9 +100,9 @@ void SceneWorker::finish(const std::string& evaluation, const std::string& note)
     return;
   }
   store_.publish(scene_.name);
-  for (const char* name : {"reconstruct.log", "evaluate.log", "evaluation.json"})
-    if (note.empty() || std::strcmp(name, "evaluate.log") != 0)
-      std::remove((store_.notes(scene_.name) + "/" + name).c_str());
+  std::remove(note("reconstruct.log").c_str());
+  std::remove(note("evaluation.json").c_str());
+  if (complaint.empty()) std::remove(note("evaluate.log").c_str());
 }
 
 void SceneWorker::fail(const ChildResult& result) {
@@ -125,7 +110,6 @@ void SceneWorker::fail(const ChildResult& result) {
   run_.reason = reason_of(result, settings_.timeout_seconds);
   if (result.status == kNoOutput && is_everybodys(run_.reason))
     throw OutputError(store_.result(scene_.name), run_.reason);
-  store_.forget_running(scene_.name);
   store_.withdraw(scene_.name);
 }
 

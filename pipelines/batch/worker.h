@@ -38,13 +38,10 @@ class SceneWorker {
   double seconds() const;  ///< since its start
 
  private:
-  void start(const std::vector<std::string>& arguments, const std::string& log);
-  bool after_reconstruction(const ChildResult& result);
-  bool after_evaluation(const ChildResult& result);
-  bool begin_evaluation();
-  void finish(const std::string& evaluation, const std::string& note);
+  void start(const std::vector<std::string>& arguments);
+  std::string note(const char* file) const { return store_.notes(scene_.name) + "/" + file; }
+  void finish(bool scored, const std::string& complaint);
   void fail(const ChildResult& result);
-  std::string evaluation() const { return store_.notes(scene_.name) + "/evaluation.json"; }
 
   const BatchScene scene_;
   const SceneKey key_;

@@ -60,27 +60,40 @@ std::vector<BatchScene> scenes_of(const BatchArguments& arguments, Progress* pro
   return mine;
 }
 
-void tell_plan(const std::vector<PlannedScene>& scenes, const BatchPlan& plan, bool json) {
-  double largest = 0;
-  for (const Load& load : plan.loads) largest = std::max(largest, load.memory_mb);
-  const double seconds = plan.open.empty() ? 0 : expected_seconds(plan);
+// What is to do, roughly how long it takes, and how much memory.
+void print_plan(const std::vector<BatchGroup>& groups, bool json, Progress* progress) {
+  Json open = Json::array();
+  double seconds = 0, largest_mb = 0;
+  size_t scenes = 0;
+  int jobs = 1;
+  for (const BatchGroup& group : groups) {
+    const BatchPlan plan = plan_batch(group, progress);
+    double sum = 0, longest = 0;
+    for (const Load& load : plan.loads) {
+      sum += load.seconds;
+      longest = std::max(longest, load.seconds);
+      largest_mb = std::max(largest_mb, load.memory_mb);
+    }
+    seconds += std::max(longest, sum / plan.jobs);
+    jobs = std::max(jobs, plan.jobs);
+    scenes += group.scenes.size();
+    for (const int i : plan.open) open.push_back(group.scenes[i].scene.folder);
+  }
   if (json) {
-    Json out = {{"scenes", scenes.size()},
-                {"done", scenes.size() - plan.open.size()},
-                {"jobs", plan.jobs},
-                {"expected_seconds", std::round(seconds)},
-                {"largest_mb", std::round(largest)}};
-    out["open"] = Json::array();
-    for (const int i : plan.open) out["open"].push_back(scenes[i].scene.folder);
-    print_json(out);
+    print_json(Json{{"scenes", scenes},
+                    {"done", scenes - open.size()},
+                    {"jobs", jobs},
+                    {"expected_seconds", std::round(seconds)},
+                    {"largest_mb", std::round(largest_mb)},
+                    {"open", open}});
     return;
   }
-  for (const int i : plan.open) std::cout << scenes[i].scene.folder << "\n";
-  std::cout << scenes.size() << " scenes, " << scenes.size() - plan.open.size() << " done, "
-            << plan.open.size() << " to do";
-  if (!plan.open.empty())
-    std::cout << ": " << plan.jobs << " at a time, roughly " << rough_duration(seconds)
-              << " and up to " << std::lround(largest) << " MB each";
+  for (const auto& folder : open) std::cout << folder.get<std::string>() << "\n";
+  std::cout << scenes << " scenes, " << scenes - open.size() << " done, " << open.size()
+            << " to do";
+  if (!open.empty())
+    std::cout << ": " << jobs << " at a time, roughly " << rough_duration(seconds) << " and up to "
+              << std::lround(largest_mb) << " MB each";
   std::cout << "\n";
 }
 
@@ -94,20 +107,13 @@ std::string names_of(const std::vector<SceneRow>& rows, SceneRow::State state) {
   return n > kMost ? names + " and " + std::to_string(n - kMost) + " more" : names;
 }
 
-int count(const std::vector<SceneRow>& rows, SceneRow::State state) {
-  return int(std::count_if(rows.begin(), rows.end(),
-                           [&](const SceneRow& row) { return row.state == state; }));
-}
-
 // What is there now: files, unless others write them too; and the rows.
 std::vector<SceneRow> sum_up(const std::vector<PlannedScene>& scenes, const BatchRun& run,
                              const BatchStore& store) {
   std::vector<SceneRow> rows;
-  std::vector<BatchScene> names;
-  for (const PlannedScene& scene : scenes) {
-    rows.push_back(scene_row(scene.scene, scene.key, store));
-    names.push_back(scene.scene);
-  }
+  for (const BatchGroup& group : batch_groups(scenes, run))
+    for (const PlannedScene& scene : group.scenes)
+      rows.push_back(scene_row(scene.scene, scene.key, store));
   sort_rows(&rows);
   if (run.shard.count > 1) return rows;
   const std::string options = batch_options_json(run);
@@ -115,15 +121,16 @@ std::vector<SceneRow> sum_up(const std::vector<PlannedScene>& scenes, const Batc
   store.write_file("summary.json",
                    [&](std::ostream& out) { write_summary_json(out, rows, options); });
   store.write_file("index.html",
-                   [&](std::ostream& out) { write_summary_html(out, rows, options, store); });
+                   [&](std::ostream& out) { write_summary_html(out, rows, options); });
   store.write_file(".batch/timings.csv",
-                   [&](std::ostream& out) { write_timings_csv(out, names, store); });
+                   [&](std::ostream& out) { write_timings_csv(out, rows, store); });
   return rows;
 }
 
-void tell_rows(const std::vector<SceneRow>& rows, const BatchRun& run, bool json) {
-  const int done = count(rows, SceneRow::State::kDone);
-  const int failed = count(rows, SceneRow::State::kFailed), open = int(rows.size()) - done - failed;
+void print_rows(const std::vector<SceneRow>& rows, const BatchRun& run, bool json) {
+  const int done = count_rows(rows, SceneRow::State::kDone);
+  const int failed = count_rows(rows, SceneRow::State::kFailed);
+  const int open = int(rows.size()) - done - failed;
   if (json) {
     write_summary_json(std::cout, rows, batch_options_json(run));
   } else {
@@ -145,29 +152,6 @@ void tell_rows(const std::vector<SceneRow>& rows, const BatchRun& run, bool json
   throw SomeFailedError(text);
 }
 
-// All scenes, keyed by the siblings that are done by now.
-std::vector<PlannedScene> with_siblings(const std::vector<PlannedScene>& scenes,
-                                        const BatchRun& run) {
-  if (run.family == 0) return scenes;
-  FamilyBatches both = family_batches(scenes, run);
-  both.first.insert(both.first.end(), both.rest.begin(), both.rest.end());
-  return both.first;
-}
-
-void run_all(const std::vector<PlannedScene>& scenes, const BatchRun& run, const BatchStore& store,
-             Progress* progress) {
-  const auto work = [&](const std::vector<PlannedScene>& some, const BatchRun& how) {
-    run_batch(some, plan_batch(some, how, progress), how, store, progress);
-  };
-  if (run.family == 0) {
-    work(scenes, run);
-    return;
-  }
-  work(family_batches(scenes, run).first, run);
-  const FamilyBatches both = family_batches(scenes, run);  // now that the first ones are done
-  work(both.rest, both.run);
-}
-
 void run_batch_verb(BatchArguments arguments, const CommonOptions& common, Progress* progress) {
   check_usage(arguments);
   BatchRun& run = arguments.run;
@@ -176,20 +160,19 @@ void run_batch_verb(BatchArguments arguments, const CommonOptions& common, Progr
   run.shard = shard_of(arguments.shard);
   const std::vector<PlannedScene> scenes = plan_scenes(scenes_of(arguments, progress), run);
   if (arguments.dry_run) {
-    const std::vector<PlannedScene> now = with_siblings(scenes, run);
-    tell_plan(now, plan_batch(now, run, progress), common.json);
+    print_plan(batch_groups(scenes, run), common.json, progress);
     return;
   }
   const BatchStore store(run.out, run.shard);
-  if (!arguments.merge) {
-    try {
-      run_all(scenes, run, store, progress);
-    } catch (const Interrupted&) {
-      sum_up(with_siblings(scenes, run), run, store);
-      throw;
-    }
+  try {
+    // The second group is made again: it is keyed by what the first came to.
+    const size_t groups = arguments.merge ? 0 : batch_groups(scenes, run).size();
+    for (size_t i = 0; i < groups; ++i) run_batch(batch_groups(scenes, run)[i], store, progress);
+  } catch (const Interrupted&) {
+    sum_up(scenes, run, store);
+    throw;
   }
-  tell_rows(sum_up(with_siblings(scenes, run), run, store), run, common.json);
+  print_rows(sum_up(scenes, run, store), run, common.json);
 }
 
 void list_run_fields(BatchArguments* a, Fields* f) {

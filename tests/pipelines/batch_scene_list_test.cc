@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -11,7 +10,6 @@
 #include "pipelines/batch/scene_input.h"
 #include "pipelines/batch/scene_list.h"
 #include "tests/datasets/temp_folder.h"
-#include "tests/support/sanitizer.h"
 
 namespace sketchsplat {
 namespace {
@@ -48,15 +46,10 @@ TEST_F(SceneList, ScenesAreFoundAtAnyDepthButNotInOneAnotherNorInHiddenFoldersNo
   EXPECT_EQ(find_scene_folders(search, &none)[2].folder, path("b"));
 }
 
-TEST_F(SceneList, NamesDoNotDependOnHowTheRootIsSpelled) {
-  scene("x/a");
-  fs::create_directory(path("y"));
+TEST_F(SceneList, NamesAreApartAndDoNotDependOnHowRootsAreSpelled) {
+  scene("x/a"), scene("y/a"), scene("y/b");
   for (const std::string& root : {path("x"), path("x/"), path("x/."), path("y/../x")})
     EXPECT_THAT(names({{root}, {}, {}, "", ""}), ElementsAre("a")) << root;
-}
-
-TEST_F(SceneList, SeveralRootsKeepTheirNamesApart) {
-  scene("x/a"), scene("y/a"), scene("y/b");
   EXPECT_THAT(names({{path("x"), path("y")}, {}, {}, "", ""}), ElementsAre("x/a", "y/a", "y/b"));
   EXPECT_THAT(names({{path("y/a"), path("y/b")}, {}, {}, "", ""}), ElementsAre("a", "b"))
       << "as a shell makes of y/*";
@@ -148,49 +141,21 @@ TEST(InputHash, ChangesWithPosesNamesAndSizesButNotWithTheFolder) {
   EXPECT_EQ(input_hash(folder.path() + "/none"), "");
 }
 
-TEST(SceneSizes, AreThoseOfTheHeadersAndBrokenScenesHaveNone) {
-  if (test::kSanitized) GTEST_SKIP() << "scenes are measured within limits of memory";
+TEST(SceneSize, IsThatOfTheHeadersAndNothingOfABrokenScene) {
   const TempFolder folder;
-  const std::string pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]";
-  const auto scene = [&](const std::string& name, int frames) {
-    std::string list;
-    for (int k = 0; k < frames; ++k) {
-      const std::string file = std::to_string(k) + ".png";
-      write_png(folder.file(name + "/color/" + file), Image<float>(8, 6, 0.5f));
-      list += (k ? "," : "") + std::string(R"({"rgb_path": ")") + file + R"(", "camtoworld": )" +
-              pose + R"(, "intrinsics": [[9,0,4],[0,9,3],[0,0,1]]})";
-    }
-    folder.write(name + "/meta_data.json", R"({"frames": [)" + list + "]}");
-    return BatchScene{name, folder.path() + "/" + name};
-  };
+  std::string frames;
+  for (const char* file : {"0.png", "1.png"}) {
+    write_png(folder.file(std::string("two/color/") + file), Image<float>(8, 6, 0.5f));
+    frames += std::string(frames.empty() ? "" : ",") + R"({"rgb_path": ")" + file +
+              R"(", "camtoworld": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]],)"
+              R"( "intrinsics": [[9,0,4],[0,9,3],[0,0,1]]})";
+  }
+  folder.write("two/meta_data.json", R"({"frames": [)" + frames + "]}");
   folder.write("broken/meta_data.json", "{");
-  int steps = 0;
-  const std::vector<SceneSize> sizes = scene_sizes({scene("two", 2),
-                                                    {"broken", folder.path() + "/broken"},
-                                                    {"gone", folder.path() + "/gone"},
-                                                    scene("three", 3)},
-                                                   {}, 60, [&] { ++steps; });
-  ASSERT_EQ(sizes.size(), 4u);
-  EXPECT_EQ(sizes[0].views, 2);
-  EXPECT_EQ(sizes[0].pixels, 2 * 8 * 6);
-  EXPECT_EQ(sizes[1].views, 0);
-  EXPECT_EQ(sizes[2].views, 0);
-  EXPECT_EQ(sizes[3].views, 3);
-  EXPECT_EQ(steps, 4);
-}
-
-// A scene file that never ends stands for one that ends the process that reads it.
-TEST(SceneSizes, ASceneThatTakesTooLongCostsItsOwnSizeOnly) {
-  const TempFolder folder;
-  fs::create_directory(folder.path() + "/slow");
-  ASSERT_EQ(mkfifo((folder.path() + "/slow/meta_data.json").c_str(), 0600), 0);
-  folder.write("next/meta_data.json", "{}");
-  int steps = 0;
-  const std::vector<SceneSize> sizes =
-      scene_sizes({{"slow", folder.path() + "/slow"}, {"next", folder.path() + "/next"}}, {}, 0.2,
-                  [&] { ++steps; });
-  EXPECT_EQ(sizes.size(), 2u);
-  EXPECT_EQ(steps, 2);
+  EXPECT_EQ(scene_size(folder.path() + "/two", {}).views, 2);
+  EXPECT_EQ(scene_size(folder.path() + "/two", {}).pixels, 2 * 8 * 6);
+  EXPECT_EQ(scene_size(folder.path() + "/broken", {}).views, 0);
+  EXPECT_EQ(scene_size(folder.path() + "/gone", {}).views, 0);
 }
 
 }  // namespace

@@ -10,44 +10,31 @@
 namespace sketchsplat {
 namespace {
 
-TEST(Schedule, StartsTheLongestFirstAndAsManyAsThereArePlaces) {
+TEST(Schedule, StartsTheLongestFirstAsManyAsThereArePlacesAndRepetitionsLast) {
   Schedule schedule({{1, 10}, {5, 10}, {3, 10}}, 2, 1000);
   EXPECT_EQ(schedule.next(), 1);
   EXPECT_EQ(schedule.next(), 2);
   EXPECT_EQ(schedule.next(), -1) << "no place";
   schedule.ended(2, 10);
+  schedule.again(2);
   EXPECT_EQ(schedule.next(), 0);
+  EXPECT_FALSE(schedule.empty());
+  schedule.ended(0, 10);
+  EXPECT_EQ(schedule.next(), 2);
   EXPECT_TRUE(schedule.empty());
-  EXPECT_EQ(schedule.running(), 2);
 }
 
-TEST(Schedule, KeepsWithinTheMemoryUnlessOneAloneIsTooLarge) {
-  Schedule schedule({{9, 500}, {8, 60}, {7, 60}}, 3, 100);
+TEST(Schedule, KeepsWithinTheMemoryThatPiecesTurnOutToTakeUnlessOneAloneIsTooLarge) {
+  Schedule schedule({{9, 500}, {8, 60}, {7, 30}, {6, 10}}, 3, 100);
   EXPECT_EQ(schedule.next(), 0) << "larger than all there is: alone";
   EXPECT_EQ(schedule.next(), -1);
   schedule.ended(0, 400);
   EXPECT_EQ(schedule.next(), 1);
-  EXPECT_EQ(schedule.next(), -1) << "120 of 100 MB";
-  schedule.ended(1, 50);
-  EXPECT_EQ(schedule.next(), 2);
-}
-
-TEST(Schedule, LearnsHowMuchMoreMemoryIsTaken) {
-  Schedule schedule({{9, 10}, {8, 10}, {7, 10}, {6, 10}}, 3, 50);
-  EXPECT_EQ(schedule.next(), 0);
-  schedule.ended(0, 30);
-  EXPECT_EQ(schedule.next(), 1);
-  EXPECT_EQ(schedule.next(), -1) << "30 + 30 of 50 MB";
-}
-
-TEST(Schedule, WhatIsToBeDoneAgainComesLast) {
-  Schedule schedule({{9, 1}, {8, 1}}, 1, 50);
-  EXPECT_EQ(schedule.next(), 0);
-  schedule.ended(0, 1);
-  schedule.again(0);
-  EXPECT_EQ(schedule.next(), 1);
-  schedule.ended(1, 1);
-  EXPECT_EQ(schedule.next(), 0);
+  EXPECT_EQ(schedule.next(), 2) << "90 of 100 MB";
+  schedule.ended(2, 90);
+  EXPECT_EQ(schedule.next(), -1) << "three times as much: 180 + 30 of 100 MB";
+  schedule.ended(1, 60);
+  EXPECT_EQ(schedule.next(), 3);
 }
 
 TEST(Estimate, GrowsWithThePicturesAndShrinksWithThreads) {
@@ -62,12 +49,9 @@ TEST(Estimate, GrowsWithThePicturesAndShrinksWithThreads) {
   EXPECT_GT(expected_load(50, 50 * 800 * 800, surfels, 1).seconds, 5 * large.seconds);
 }
 
-TEST(Resources, AreThere) {
+TEST(Resources, AreThereAndTheSmallestLimitOfTheGroupsCounts) {
   EXPECT_GE(usable_cores(), 1);
   EXPECT_GT(usable_memory_mb(), 10);
-}
-
-TEST(Resources, TheSmallestLimitOfTheGroupsCounts) {
   const TempFolder folder;
   folder.write("memory.max", "max\n");
   folder.write("slurm/memory.max", "8000000000\n");
