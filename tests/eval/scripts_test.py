@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""charts_test.py EVAL: what eval/charts.py makes of rows; charts only where matplotlib is there."""
+"""scripts_test.py EVAL: what eval/charts.py and eval/floors.py make of rows; charts only where
+matplotlib is there."""
+import csv
 import importlib.util
 import json
 import math
@@ -14,6 +16,7 @@ import unittest
 EVAL = sys.argv.pop(1)
 sys.path.insert(0, EVAL)
 import charts  # noqa: E402
+import floors  # noqa: E402
 
 
 class DropPoint(unittest.TestCase):
@@ -88,6 +91,30 @@ class Folder(unittest.TestCase):
         self.assertIn("| threads | fast | 1 to 2 | 90.0 | 1 | no |", limits)
         self.assertIn("| size | fast | total | 1 to 10 | 2 | 2.00 | - | 1 |", growth)
         self.expect_charts(files, ["blur", "threads", "size"])
+
+
+class Floors(unittest.TestCase):
+    ROWS = [{"axis": "blur", "at": "1", "variant": "fast", "F5": 90.0, "solid_right": 1.0},
+            {"axis": "blur", "at": "2", "variant": "fast", "F5": 80.0, "solid_refused": 1.0},
+            {"axis": "noise", "at": "1", "variant": "fast", "F5": None, "solid_wrong": 1.0}]
+
+    def measured(self, rows, metric):
+        return floors.measured({"rows": rows, "metric": metric}, self.ROWS)
+
+    def test_are_of_means_and_of_sums_of_solids_over_the_rows_that_they_name(self):
+        self.assertEqual(self.measured("", "F5"), 85)
+        self.assertEqual(self.measured("axis=bl*; at=2", "F5"), 80)
+        self.assertTrue(math.isnan(self.measured("axis=noise", "F5")))
+        self.assertEqual(self.measured("", "solid_right"), 1)
+        self.assertEqual(self.measured("", "solid_right+solid_refused"), 2)
+
+    def test_of_the_table_belong_to_suites_and_lie_below_what_was_measured(self):
+        with open(floors.TABLE, encoding="utf-8") as file:
+            for floor in csv.DictReader(file):
+                suite = os.path.join(EVAL, "suites", floor["suite"] + ".yml")
+                self.assertTrue(floor["suite"] in floors.SMALL or os.path.exists(suite), floor)
+                if floor["measured"]:
+                    self.assertLessEqual(float(floor["floor"]), float(floor["measured"]), floor)
 
 
 if __name__ == "__main__":
