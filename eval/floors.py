@@ -11,7 +11,7 @@ suites, too, hours of two cores. What was measured with the same program before 
 A row of the table: the suite (eval/suites/SUITE.yml, or abc-nef, or threads), the labels of the
 rows that count (axis=..., at=..., variant=..., with * for anything; empty: all rows), the metric
 (a number of rows.json: its mean; a number of solids, or a sum of such: their sum), what was
-measured when the floor was set, and the floor. --write measures and sets both anew, at the same
+measured when the floor was set, and the floor (none: nobody has measured it). --write measures and sets both anew, at the same
 distance.
 """
 import argparse
@@ -94,7 +94,7 @@ def check(suite, floors, arguments):
         if arguments.write:
             distance = float(floor["measured"] or 1) - float(floor["floor"] or 0)
             floor.update(measured=f"{now:.2f}", floor=f"{now - distance:.2f}")
-        below = not now >= float(floor["floor"] or math.nan) and not arguments.write
+        below = floor["floor"] != "" and not now >= float(floor["floor"]) and not arguments.write
         missed += below
         print(f"  {floor['rows'] or 'all':42} {floor['metric']:28} {now:7.2f}  "
               f"was {floor['measured']:>6}  floor {floor['floor']:>6}{'  BELOW' if below else ''}")
