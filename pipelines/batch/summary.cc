@@ -76,7 +76,7 @@ Json json_of(const SceneRow& row) {
 }
 
 // Fit for pages, too.
-std::string dump(const Json& json) { return without_tags(json_text(json)); }
+std::string line_of(const Json& json) { return without_tags(json_text(json)); }
 
 }  // namespace
 
@@ -137,9 +137,9 @@ void write_summary_json(std::ostream& out, const std::vector<SceneRow>& rows,
                {"open", count_rows(rows, State::kOpen)}};
   head["mean"] = numbers_json(mean_scores(rows));
   head["options"] = parse_json<Json>(options_json);
-  const std::string text = dump(head);
+  const std::string text = line_of(head);
   out << text.substr(0, text.size() - 1) << ",\n\"scenes\":[";
-  for (size_t i = 0; i < rows.size(); ++i) out << (i ? ",\n" : "\n") << dump(json_of(rows[i]));
+  for (size_t i = 0; i < rows.size(); ++i) out << (i ? ",\n" : "\n") << line_of(json_of(rows[i]));
   out << "\n]}\n";
 }
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -26,7 +25,6 @@ namespace sketchsplat {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -60,7 +58,7 @@ std::string identity_of_folder(const std::string& folder) {
 void add_numbers(const Json& object, const std::string& prefix, BenchRow* row) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_number()) row->set(prefix + name, value.get<double>());
-    if (value.is_null()) row->set(prefix + name, kNone);
+    if (value.is_null()) row->set(prefix + name, std::nan(""));
     if (value.is_object()) add_numbers(value, prefix + name + "_", row);
   }
 }
@@ -225,7 +223,7 @@ void Measurer::judge_solid(const std::string& truth, bool written, BenchRow* row
 const Measurer::SceneFacts& Measurer::facts_of(const std::string& folder) {
   const auto known = facts_.find(folder);
   if (known != facts_.end()) return known->second;
-  SceneFacts facts = {kNone, kNone, kNone};
+  SceneFacts facts = {std::nan(""), std::nan(""), std::nan("")};
   try {
     const Scene scene = open_scene(folder);
     decode_seconds(scene);  // now the files are in the cache of the system, as for the runs
