@@ -261,9 +261,8 @@ std::vector<BatchGroup> batch_groups(const std::vector<PlannedScene>& scenes, co
     rest.run.method.like += (siblings.empty() ? "" : "\n") + s.scene.name;
     siblings += hash_of_file(folder + "/sketch.json") + "\n";
   }
-  // Without siblings they are done cold, as they are keyed.
-  if (!siblings.empty())
-    for (PlannedScene& s : rest.scenes) s.key.program = hash_of(program_text(rest.run) + siblings);
+  if (siblings.empty()) return {first, {rest.scenes, run}};  // cold, as they are keyed
+  for (PlannedScene& s : rest.scenes) s.key.program = hash_of(program_text(rest.run) + siblings);
   return {first, rest};
 }
 

@@ -31,7 +31,7 @@ void write_charts(const std::string& out, Progress* progress) {
   const bool done = pipe && pclose(pipe) == 0;
   while (!said.empty() && said.back() == '\n') said.pop_back();
   if (done)
-    progress->tell(said);
+    progress->info(said);
   else
     progress->warn(
         "no charts: " + command +
