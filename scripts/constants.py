@@ -16,7 +16,7 @@ import subprocess
 
 FOLDERS = ["edges/image", "edges/views", "edges/contrast", "sketches", "topology", "pipelines/base",
            "pipelines/survey", "pipelines/candidates", "pipelines/join", "pipelines/adjust",
-           "pipelines/detectors", "pipelines/stages", "pipelines/cameras", "pipelines/method"]
+           "pipelines/detectors", "pipelines/options", "pipelines/cameras", "pipelines/method"]
 APART = ["sketches/io/"]  # formats of files
 SCALE = re.compile(
     r"sigma|noise|price|nats?$|nat_|cost|prior|odds|scatter|weight|deviation|rate|share_of|probab"
