@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the scene in this folder by POV-Ray: a stepped block with a boss on a wooden table, under lamps
-with soft shadows and light between its faces, as six JPEG pictures of 640 x 480 px with masks,
-cameras (COLMAP's text files) and true edges.
+"""Draws the scene in this folder by POV-Ray: a stepped block with a boss on a wooden table, under
+lamps with soft shadows and light between its faces, as six JPEG pictures of 640 x 480 px with
+masks, cameras (COLMAP's text files) and true edges.
 
     draw.py [FOLDER]    # needs Debian's povray; into this folder if none is given
 
@@ -104,7 +104,8 @@ def draw(path, content, rotation, centre, kind):
         file.write(scene)
         file.flush()
         subprocess.run(["povray", f"+I{file.name}", f"+O{path}", f"+W{WIDTH}", f"+H{HEIGHT}", kind,
-                        "+A0.05", "+AM2", "+R3", "-D", "-V", "-GA"], check=True, stderr=subprocess.DEVNULL)
+                        "+A0.05", "+AM2", "+R3", "-D", "-V", "-GA"],
+                       check=True, stderr=subprocess.DEVNULL)
 
 
 def edges():

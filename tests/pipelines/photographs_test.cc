@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The whole method on pictures that another renderer drew (tests/photographs/draw.py): soft shadows,
-// light between faces, JPEG, a wooden table around the masks.
+// The whole method on pictures that another renderer drew (tests/photographs/draw.py): soft
+// shadows, light between faces, JPEG, a wooden table around the masks.
 #include <gtest/gtest.h>
 
 #include "tests/pipelines/rendered_part.h"

@@ -26,7 +26,8 @@ SurfelTarget make_target(const TrainingView& full, int side, const Eigen::Vector
   TrainingView small = shrink(full, side);
   const int w = small.alpha.width, h = small.alpha.height, margin = std::max(4, side / 25);
   cv::Mat1b near;
-  cv::dilate(mat_of(small.alpha) > 0.02f, near, cv::Mat::ones(2 * margin + 1, 2 * margin + 1, CV_8U));
+  cv::dilate(mat_of(small.alpha) > 0.02f, near,
+             cv::Mat::ones(2 * margin + 1, 2 * margin + 1, CV_8U));
   cv::Rect box = cv::boundingRect(near);
   box -= cv::Point(kWindow, kWindow), box += cv::Size(2 * kWindow, 2 * kWindow);
   box &= cv::Rect(0, 0, w, h);
