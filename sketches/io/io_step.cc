@@ -168,7 +168,7 @@ std::vector<StepPaint> kind_paints() {
   std::vector<StepPaint> paints;
   for (int k = 0; k < kNumKinds; ++k) {
     const auto hundredths = [&](int c) {
-      return std::round(100 * kind_color(StrokeKind(k))[c]) / 100;
+      return std::round(100.0 * kind_color(StrokeKind(k))[c]) / 100;
     };
     paints.push_back({kLayers[k], hundredths(0), hundredths(1), hundredths(2)});
   }
