@@ -30,8 +30,6 @@ struct DetectionOptions {
   GeometryOptions geometry;
   SurfelFieldOptions surfels;
   std::string surfel;  ///< what the user changes of these: "kernel=skew-normal,count=2000"
-  double surfel_snap_px =
-      3.0;  ///< [px] an edge of the picture says where one of surfels is; 0: never
 };
 
 /// Finds the edgels of views.

@@ -16,6 +16,7 @@
 namespace sketchsplat {
 namespace {
 
+constexpr double kSnapPx = 3;     // [px] from an edge of the geometry to that of the picture
 constexpr double kAlongDeg = 30;  // largest turn between an edge of the picture and of the geometry
 constexpr int kFewestViews = 3;
 constexpr int kFewestPoints = 2;  // of a track that is judged
@@ -51,11 +52,8 @@ class SurfelDetector : public Detector {
 
   EdgelMap detect(const Scene&, const View& view) const override {
     for (size_t i = 0; i < world_.views.size(); ++i)
-      if (world_.views[i].image_path == view.image_path) {
-        if (options_.surfel_snap_px <= 0) return shape_in_image(i);
-        return snap_edgels(shape_[i], world_.maps[i], kinds_[i], field_.evenness > kEven,
-                           options_.surfel_snap_px);
-      }
+      if (world_.views[i].image_path == view.image_path)
+        return snap_edgels(shape_[i], world_.maps[i], kinds_[i], field_.evenness > kEven, kSnapPx);
     read_masked(view);  // says what is wrong with it
     throw InputError(view.image_path, "a picture that surfels were fitted to", "another one");
   }
@@ -73,13 +71,6 @@ class SurfelDetector : public Detector {
   std::string surfels() const override { return surfel_ply(field_); }
 
  private:
-  // Edges that the surfels show; what is rendered has no distortion, masks of views have.
-  EdgelMap shape_in_image(size_t i) const {
-    EdgelMap out = shape_[i];
-    if (!world_.views[i].lens.is_identity()) out.mask = world_.maps[i].mask;
-    return out;
-  }
-
   void fit_surfels(const Scene& scene, const RunLog& log) {
     Stage stage("surfels", log, options_.surfels.renderings);
     const std::vector<TrainingView> views = look(scene);

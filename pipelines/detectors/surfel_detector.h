@@ -9,9 +9,9 @@
 namespace sketchsplat {
 
 /// The detector "2dgs-sn": surfels are fitted to all pictures (edges/surfels/fit/surfel_field.h),
-/// edges are those of the depth and normals that the surfels show in a view and of its alpha. With
-/// `snap`, an edge of the picture beside an edge of the geometry says where that is, and edges of
-/// the pictures that continue one another in space are judged by the surfels of all views
+/// edges are those of the depth and normals that the surfels show in a view and of its alpha. An
+/// edge of the picture beside an edge of the geometry says where that is, and edges of the pictures
+/// that continue one another in space are judged by the surfels of all views
 /// (edges/surfels/start/edge_tracks.h).
 std::unique_ptr<Detector> make_surfel_detector(const DetectionOptions& options);
 

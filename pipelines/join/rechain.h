@@ -8,7 +8,6 @@
 namespace sketchsplat {
 
 struct RechainOptions {
-  bool on = true;
   double gap_px = 6;      ///< [px] between ends that continue one another
   double turn_deg = 25;   ///< [deg] between their tangents
   double sigma_px = 0.2;  ///< [px] least standard deviation of what all views say of a place

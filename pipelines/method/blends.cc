@@ -14,6 +14,7 @@ namespace sketchsplat {
 namespace {
 
 constexpr double kMoves = 0.3;      // of its radius, by the outline of a blend of a right angle
+constexpr double kMostPx = 40;      // [px] radius of a rounded edge: wider ones are surfaces
 constexpr double kBesidePx = 8;     // [px] of strokes on one round whose radius nobody knows
 constexpr double kSameShare = 0.5;  // of a stroke that lies on a blend that is known
 
@@ -37,7 +38,7 @@ Sketch round_strokes(const Sketch& sketch, const EdgeWorld& world,
 
 // Of strokes on one round, the first; wider ones than asked for are none.
 std::vector<bool> one_each(const std::vector<RoundJudge::Radius>& radii, const Observation& wide,
-                           double footprint, double most_px) {
+                           double footprint) {
   std::vector<int> order(radii.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -46,7 +47,7 @@ std::vector<bool> one_each(const std::vector<RoundJudge::Radius>& radii, const O
   std::vector<CurvePoints> known;
   std::vector<double> reach;
   for (const int i : order) {
-    if (radii[i].px > most_px) continue;
+    if (radii[i].px > kMostPx) continue;
     const CurvePoints points = points_of(wide, i);
     bool same = false;
     for (size_t k = 0; k < known.size() && !same; ++k)
@@ -70,11 +71,11 @@ Blends find_blends(const Sketch& sketch, const EdgeWorld& world,
   // The widths of edges are those of the sketch.
   Sketch all = rounds;
   append_strokes(sketch, &all);
-  const Observation wide = observe_rounds(all, world, kMoves * options.blend_px);
+  const Observation wide = observe_rounds(all, world, kMoves * kMostPx);
   const RoundJudge judge(world, wide, select_options(options).round);
   std::vector<RoundJudge::Radius> radii;
   for (int i = 0; i < rounds.size(); ++i) radii.push_back(judge.radius(i, &others));
-  const std::vector<bool> keep = one_each(radii, wide, world.footprint, options.blend_px);
+  const std::vector<bool> keep = one_each(radii, wide, world.footprint);
   for (int i = 0; i < rounds.size(); ++i)
     if (keep[i])
       out.blends.push_back(

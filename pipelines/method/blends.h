@@ -22,7 +22,7 @@ struct Blends {
 };
 
 /// What of the edgels that `sketch` does not explain is rounds rather than edges (RoundJudge), with
-/// radii of at most `blend_px` (options). Of strokes side by side on one round the one counts of
+/// radii of at most 40 px. Of strokes side by side on one round the one counts of
 /// which most outlines tell the radius.
 Blends find_blends(const Sketch& sketch, const EdgeWorld& world, const ReconstructOptions& options);
 

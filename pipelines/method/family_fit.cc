@@ -10,6 +10,7 @@
 #include "datasets/types/median.h"
 #include "datasets/types/parallel.h"
 #include "edges/views/unexplained.h"
+#include "pipelines/survey/explained.h"
 #include "sketches/curve/curve.h"
 #include "sketches/curve/curve_jacobian.h"
 #include "sketches/curve/sample.h"
@@ -185,14 +186,10 @@ std::vector<SampleMatch> FamilyFit::far_matches(const CurvePoints& samples, doub
 }
 
 double FamilyFit::misfit(const Sibling& sibling) const {
-  const Sketch s = sketch(sibling);
-  const SampleLayout layout = plan_samples(s, 0.5 * widest_px_ * world_.footprint);
-  const Samples samples = evaluate_samples(s, layout);
+  const CurvePoints points = points_on(sketch(sibling), 0.5 * widest_px_ * world_.footprint);
   double fit = 0;
-  for (const SampleMatch& m :
-       far_matches({samples.position, samples.tangent, layout.first}, widest_px_))
-    fit += m.weight;
-  return 1 - fit / std::max(1.0, double(layout.size()) * double(views_.size()));
+  for (const SampleMatch& m : far_matches(points, widest_px_)) fit += m.weight;
+  return 1 - fit / std::max(1.0, double(points.first.back()) * double(views_.size()));
 }
 
 std::vector<Sibling> FamilyFit::starts() const {
@@ -338,9 +335,7 @@ float median_strength(const std::vector<Edgel>& edgels) {
 }  // namespace
 
 double FamilyFit::explained(const Sketch& sketch, double reach_px) const {
-  const SampleLayout layout = plan_samples(sketch, 2 * world_.footprint);
-  const Samples samples = evaluate_samples(sketch, layout);
-  const CurvePoints points{samples.position, samples.tangent, layout.first};
+  const CurvePoints points = points_on(sketch, 2 * world_.footprint);
   const bool round = std::any_of(sketch.strokes.begin(), sketch.strokes.end(),
                                  [](const Stroke& s) { return s.kind != StrokeKind::kLine; });
   ExplainOptions explain;

@@ -92,7 +92,6 @@ Sketch grown(const Sketch& sketch, const EdgeWorld& world, const ReconstructOpti
 }
 
 bool rewrite_chains(const EdgeWorld& world, const ReconstructOptions& options, Sketch* sketch) {
-  if (!options.rechain.on) return false;
   const Spliced spliced = splice(*sketch, world, prices(options), options.splice);
   const Rechained r = rechain(spliced.sketch, world, options.segment, options.rechain);
   const bool changed = spliced.overlaps + spliced.gaps + r.changes > 0;

@@ -8,7 +8,10 @@ namespace sketchsplat {
 namespace {
 
 constexpr double kSmoother = 0.1;  // standard deviation of smooth joints at last
-constexpr double kNoRound = 1e6;   // [px] as --least-round
+// [px] Standard deviation of the edgels of surfels about their edge, see EvidenceModel.
+constexpr double kSurfelSigmaPx = 0.25;
+// Of edges that surfels show, at least: print hides edges that it crosses.
+constexpr double kSurfelGapPrice = 2;
 // Reach of the last polish. What lies farther off is something else beside the stroke, to which a
 // wider reach would draw it: the outline of a round that leaves an edge, as a rule.
 constexpr double kNearPx = 0.3, kNear = 3;  // and in standard deviations
@@ -28,18 +31,14 @@ SelectOptions select_options(const ReconstructOptions& options, const PriorOdds&
   select.round_odds = odds.round, select.edge_odds = odds.edge;
   // Surfels say less exactly than pictures where an edge is.
   if (uses_surfels(options))
-    select.evidence.least_sigma_px = select.round.least_sigma_px = options.surfel_sigma_px;
-  // Surfels round all edges: without pictures rounds cannot be told.
-  if (uses_surfels(options) && !(options.surfel_snap_px > 0))
-    select.round.least_radius_px = kNoRound;
+    select.evidence.least_sigma_px = select.round.least_sigma_px = kSurfelSigmaPx;
   return select;
 }
 
 ExtentOptions extent_options(const ReconstructOptions& options) {
   ExtentOptions extent = options.extent;
   extent.box = options.box;
-  if (uses_surfels(options))
-    extent.gap_price = std::max(extent.gap_price, options.surfel_gap_price);
+  if (uses_surfels(options)) extent.gap_price = std::max(extent.gap_price, kSurfelGapPrice);
   return extent;
 }
 

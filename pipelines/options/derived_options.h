@@ -10,7 +10,7 @@ namespace sketchsplat {
 Prices prices(const ReconstructOptions& options);
 
 /// How strokes are chosen: at that price, by that deviation, and with the tolerance that edges of
-/// the detector need (surfel_sigma_px). `odds`: of the first strokes, of which rounds and accidents
+/// the detector need. `odds`: of the first strokes, of which rounds and accidents
 /// had not been left out yet; without, as the strokes at hand have them.
 SelectOptions select_options(const ReconstructOptions& options, const PriorOdds& odds = {});
 

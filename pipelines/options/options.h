@@ -53,12 +53,7 @@ struct ReconstructOptions : DetectionOptions {
   bool second_look = true;   ///< at the edgels that no stroke explains
   bool silhouettes = true;   ///< told by colours, where there are no masks
   bool final_polish = true;  ///< end on the edgels themselves
-  /// [px] standard deviation of the edgels of surfels about their edge, see EvidenceModel
-  double surfel_sigma_px = 0.25;
-  /// Of edges that surfels tell of, if above extent.gap_price: print hides edges that it crosses
-  double surfel_gap_price = 2;
   bool blends = false;            ///< find rounded edges, too; no strokes
-  double blend_px = 40;           ///< [px] largest radius of one
   bool inferred = true;           ///< edges that no image shows and the solid implies
   std::string like;               ///< sketches of siblings, one a line; empty: none
   std::string like_folder;        ///< that these are below, if they are relative; not recorded

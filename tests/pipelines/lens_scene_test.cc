@@ -110,7 +110,6 @@ TEST(LensScene, SurfelsAreFittedToPicturesWithoutIt) {
   const BentPart part(20, 300);
   ReconstructOptions options = fast();
   options.detector = "2dgs-sn";
-  options.surfel_snap_px = 0;  // what the surfels alone show
   const Sketch curves = reconstruct(part.bent_scene, options, nullptr).sketch;
   EXPECT_GT(f_at(score(curves, part.folder.path()).fine, 0.005), 85);
 }
