@@ -178,21 +178,20 @@ void run_batch_verb(BatchArguments arguments, const CommonOptions& common, Progr
 void list_run_fields(BatchArguments* a, Fields* f) {
   f->group("Running");
   f->add("jobs", &a->run.jobs, "scenes", 0, 4096,
-         "At a time, of --threads each (1 if left out); 0 is what cores and memory allow");
+         "Scenes at a time, with --threads each (default 1); 0: what cores and memory allow");
   f->add("timeout", &a->run.timeout_seconds, "s", 0, 1e7,
-         "A scene that takes longer is given up; 0 waits for ever");
+         "Stop a scene that takes longer; 0: never");
   f->add("memory", &a->run.memory_mb, "MB", 0, 1e9,
-         "Address space that a scene may take; 0 sets no limit");
+         "Limit of the address space of a scene; 0: none");
   f->add("retries", &a->run.retries, "times", 0, 100,
-         "Of a scene that was killed from elsewhere, perhaps for want of memory");
+         "Retries of a scene that another process killed, perhaps for lack of memory");
   f->add("family", &a->run.family, "scenes", 0, 1000,
-         "So many first ones, by name, are done by themselves and are siblings (--like) of all "
-         "others; 0 knows no family");
-  f->add("force", &a->run.force, "Do again what is done");
+         "Reconstruct this many scenes first, by name, and start all others from them (--like)");
+  f->add("force", &a->run.force, "Repeat scenes that are done");
   f->add("shard", &a->shard, "I/N",
-         "Only every N-th of the scenes, from the I-th on, by hashes of their names");
-  f->add("merge", &a->merge, "Run nothing: write the summary of what is there, of all shards");
-  f->add("dry-run", &a->dry_run, "Say what is to do, how long it will take, and how much memory");
+         "Only the I-th of N shares of the scenes, by hashes of their names");
+  f->add("merge", &a->merge, "Only write the summary of all shards");
+  f->add("dry-run", &a->dry_run, "Only print what is to be done, and the expected time and memory");
 }
 
 }  // namespace
@@ -203,15 +202,16 @@ Verb batch_verb() {
   Fields f;
   f.group("Arguments");
   Field& roots = f.add("roots", &arguments->roots, "ROOT",
-                       "Every scene folder in or below it is reconstructed");
+                       "Reconstruct every scene folder in or below this folder");
   roots.positional = roots.several = true;
-  Field& out = f.add("out", &arguments->run.out, "DIR",
-                     "A folder for each scene goes there; what it holds already is not done again");
+  Field& out =
+      f.add("out", &arguments->run.out, "DIR",
+            "The folder for results, one folder a scene; scenes that are done are not repeated");
   out.required = true;
   out.short_name = "o";
-  f.add("list", &arguments->list, "FILE", "Scene folders, one a line, too; - is standard input");
+  f.add("list", &arguments->list, "FILE", "More scene folders, one a line; - is standard input");
   f.add("match", &arguments->match, "GLOB",
-        "Only scenes whose name, or its last part, is like this; may be repeated")
+        "Only scenes whose name, or its last part, matches; may be repeated")
       .several = true;
   list_open_fields(&arguments->run.open, &f);
   list_run_fields(arguments.get(), &f);

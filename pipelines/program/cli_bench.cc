@@ -103,23 +103,23 @@ Verb bench_verb() {
   Field& scenes = f.add("scenes", &arguments->scenes, "SCENES", "Scene folders with ground truth");
   scenes.positional = scenes.several = true;
   f.add("suite", &arguments->suite, "FILE",
-        "A list of scenes, parts to synthesize and what is varied, instead of SCENES");
+        "A suite of scenes, parts to synthesize and what to vary, instead of SCENES");
   Field& out = f.add("out", &arguments->out, "DIR",
-                     "The folder for tables and charts; rows that it holds are not run again");
+                     "The folder for tables and charts; its rows are not run again");
   out.required = true;
   out.short_name = "o";
   f.add("scene-folder", &arguments->scene_folder, "DIR",
-        "The folder of synthesized scenes, which are reused; if left out, scenes/ in --out");
+        "Folder of synthesized scenes, which are reused; default: scenes/ in --out");
   f.group("What is run");
   f.add("presets", &arguments->presets, "NAMES",
-        "Presets to compare, with commas; if left out, those of the suite, or all");
+        "Presets to compare, with commas between; default: those of the suite, or all");
   f.add("detectors", &arguments->detectors, "NAMES",
-        "Detectors to compare, with commas; if left out, those of the suite, or image");
+        "Detectors to compare, with commas between; default: those of the suite, or image");
   f.add("ablation", &arguments->ablation,
-        "Compare parts of the method instead of presets; with --detectors 2dgs-sn, parts of that");
+        "Leave out parts of the method in turn; with --detectors 2dgs-sn, compare its variants");
   f.add("with", &arguments->with, "NAME=VALUE,...", "Options of reconstruct for all runs");
   f.add("repeats", &arguments->repeats, "runs", 0, 1000,
-        "Of each; the fastest counts. 0 is what the suite says, or 1");
+        "Repeat each run N times; keep the fastest; 0: as the suite states, or once");
   Verb verb;
   verb.name = "bench";
   verb.summary = "Measure accuracy beside time, and where it breaks, with ground truth";
