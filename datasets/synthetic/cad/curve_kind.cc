@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "datasets/synthetic/cad/curve_kind.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-#include "sketches/fit/fit.h"
+#include "datasets/types/dense.h"
 
 namespace sketchsplat {
 namespace {
@@ -24,6 +24,13 @@ std::vector<double> with_ends(const ParametricCurve& curve, const std::vector<do
     if (t > knots.back() && t < curve.last) knots.push_back(t);
   knots.push_back(curve.last);
   return knots;
+}
+
+Vector3d circle_centre(const Vector3d& a, const Vector3d& b, const Vector3d& c, bool* defined) {
+  const Vector3d u = b - a, v = c - a, n = u.cross(v);
+  *defined = n.norm() > 1e-9 * u.norm() * v.norm() && u.norm() > 0 && v.norm() > 0;
+  if (!*defined) return a;
+  return a + (u.squaredNorm() * v.cross(n) + v.squaredNorm() * n.cross(u)) / (2 * n.squaredNorm());
 }
 
 bool is_line(const Matrix3Xd& p, double tolerance) {
@@ -51,21 +58,74 @@ void set_turn(const Matrix3Xd& p, CurveShape* shape) {
 }
 
 bool is_circular(const Matrix3Xd& p, double tolerance, CurveShape* shape) {
-  const CircleFit fit = fit_circle(p);
-  if (!fit.success || fit.max_distance > tolerance) return false;
-  shape->centre = fit.centre;
-  shape->u = p.col(0) - fit.centre;
-  shape->v = fit.normal.cross(shape->u);
+  bool defined = false;
+  const Eigen::Index third = p.cols() / 3;
+  const Vector3d a = p.col(0), b = p.col(third), c = p.col(2 * third);
+  const Vector3d centre = circle_centre(a, b, c, &defined);
+  if (!defined) return false;
+  const double radius = (a - centre).norm();
+  const Vector3d normal = (b - a).cross(c - a).normalized();
+  for (Eigen::Index i = 0; i < p.cols(); ++i) {
+    const Vector3d r = p.col(i) - centre;
+    if (std::abs(r.norm() - radius) > tolerance || std::abs(r.dot(normal)) > tolerance)
+      return false;
+  }
+  shape->centre = centre;
+  shape->u = a - centre;
+  shape->v = normal.cross(shape->u);
   set_turn(p, shape);
   return true;
 }
 
+// The conic through planar points (x, y) by least squares: x^2, xy, y^2, x, y, 1.
+Eigen::Matrix<double, 6, 1> fit_conic(const Eigen::Matrix2Xd& q) {
+  Eigen::Matrix<double, Eigen::Dynamic, 6> rows(q.cols(), 6);
+  for (Eigen::Index i = 0; i < q.cols(); ++i) {
+    const double x = q(0, i), y = q(1, i);
+    rows.row(i) << x * x, x * y, y * y, x, y, 1;
+  }
+  return svd(rows).v.col(5);
+}
+
+// Half-axes as columns, the longer one first; false if the conic is no ellipse.
+bool half_axes(const Eigen::Matrix<double, 6, 1>& k, Eigen::Vector2d* centre,
+               Eigen::Matrix2d* axes) {
+  Eigen::Matrix2d A;
+  A << k[0], k[1] / 2, k[1] / 2, k[2];
+  if (!(A.determinant() > 1e-9 * A.squaredNorm())) return false;
+  const Eigen::Vector2d b(k[3] / 2, k[4] / 2);
+  *centre = -A.inverse() * b;
+  const double level = -(k[5] + b.dot(*centre));
+  const auto solver = eigen_symmetric(A / level);
+  if (!(solver.values.minCoeff() > 0)) return false;
+  *axes = solver.vectors * solver.values.cwiseSqrt().cwiseInverse().asDiagonal();
+  return true;
+}
+
 bool is_elliptic(const Matrix3Xd& p, double tolerance, CurveShape* shape) {
-  const EllipseFit fit = fit_ellipse(p);
-  if (!fit.success || fit.max_distance > tolerance) return false;
-  shape->centre = fit.centre, shape->u = fit.u, shape->v = fit.v;
+  const Vector3d mean = p.rowwise().mean();
+  const Matrix3Xd from = p.colwise() - mean;
+  const auto spread = eigen_symmetric(from * from.transpose());
+  if ((spread.vectors.col(0).transpose() * from).cwiseAbs().maxCoeff() > tolerance) return false;
+  Eigen::Matrix<double, 3, 2> plane;
+  plane << spread.vectors.col(2), spread.vectors.col(1);
+  const double scale = from.colwise().norm().maxCoeff();
+  Eigen::Vector2d centre;
+  Eigen::Matrix2d axes;
+  if (!half_axes(fit_conic(plane.transpose() * from / scale), &centre, &axes)) return false;
+  shape->centre = mean + plane * centre * scale;
+  shape->u = plane * axes.col(0) * scale;
+  shape->v = plane * axes.col(1) * scale;
+  for (Eigen::Index i = 0; i < p.cols(); ++i) {
+    // Distance to first order: the excess of the radius over that of the ellipse, by its gradient.
+    const Vector3d r = p.col(i) - shape->centre;
+    const double x = r.dot(shape->u) / shape->u.squaredNorm();
+    const double y = r.dot(shape->v) / shape->v.squaredNorm();
+    const double slope = 2 * std::hypot(x / shape->u.norm(), y / shape->v.norm());
+    if (!(std::abs(x * x + y * y - 1) <= tolerance * slope)) return false;
+  }
   set_turn(p, shape);
-  return shape->turn >= kLeastTurn;
+  return true;
 }
 
 }  // namespace
@@ -79,7 +139,7 @@ CurveShape recognise(const ParametricCurve& curve, double tolerance) {
     shape.kind = CurveShape::kLine;
   else if (is_circular(p, tolerance, &shape))
     shape.kind = CurveShape::kCircular;
-  else if (is_elliptic(p, tolerance, &shape))
+  else if (is_elliptic(p, tolerance, &shape) && shape.turn >= kLeastTurn)
     shape.kind = CurveShape::kElliptic;
   return shape;
 }
