@@ -18,6 +18,16 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Plane = Eigen::Hyperplane<double, 3>;
 
+constexpr double kLinePx = 30;    // [px] along its tangent, within which others bear a point out
+constexpr double kLineViews = 6;  // beyond the fewest, that these and the point have together
+constexpr double kTablePx = 2;    // [px] of points on the table
+constexpr double kPrintPx = 6;    // [px] over the table, up to where a point may be print on it
+constexpr double kGapPx = 24;     // [px] seen from above, that parts the object from other things,
+constexpr double kGap =
+    0.12;  // in diameters of the object, if that is more: large things fall apart
+constexpr double kFootPx = 4;            // [px] around the object's points, on the table
+constexpr double kAbovePx = 20;          // [px] the same above it, where nothing else is near
+constexpr double kLeastOnTable = 0.1;    // of the points, that lie on a plane for it to be a table
 constexpr int kTrials = 3000;            // planes through three points
 constexpr int kMostPoints = 3000;        // that judge them
 constexpr double kSameDirection = 0.96;  // cosine
@@ -65,13 +75,12 @@ std::vector<Vector3d> every_nth(const std::vector<Vector3d>& points) {
 }
 
 std::optional<Plane> find_table(const std::vector<Vector3d>& all,
-                                const std::vector<Vector3d>& cameras, double footprint,
-                                const RegionOptions& options) {
+                                const std::vector<Vector3d>& cameras, double footprint, int seed) {
   const std::vector<Vector3d> points = every_nth(all);
   const int n = int(points.size());
   if (n < 20) return std::nullopt;
-  const double tolerance = options.table_px * footprint;
-  std::mt19937 rng(1u + options.seed);
+  const double tolerance = kTablePx * footprint;
+  std::mt19937 rng(1u + seed);
   Plane best;
   Judged most;
   for (int trial = 0; trial < kTrials; ++trial) {
@@ -90,7 +99,7 @@ std::optional<Plane> find_table(const std::vector<Vector3d>& all,
   if (!(most.score > 0)) return std::nullopt;
   for (int k = 0; k < 3; ++k) best = refined(best, points, tolerance);
   most = judge(best, points, tolerance);
-  if (most.on < options.least_share * n || most.below > kMostBelow * n) return std::nullopt;
+  if (most.on < kLeastOnTable * n || most.below > kMostBelow * n) return std::nullopt;
   return best;
 }
 
@@ -118,7 +127,7 @@ std::vector<char> groups_of_object(const std::vector<Vector2d>& places,
 // Of the places, those of some groups and of all groups that lie, step by step, nearer to them than
 // a gap; and at last those of groups around all that.
 std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vector<int>& group,
-                            std::vector<char> own, double footprint, const RegionOptions& options) {
+                            std::vector<char> own, double footprint, double least_gap) {
   std::vector<Vector2d> taken;
   for (bool more = true; more;) {
     more = false;
@@ -126,7 +135,7 @@ std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vect
     Eigen::AlignedBox2d box;
     for (size_t i = 0; i < places.size(); ++i)
       if (own[group[i]]) taken.push_back(places[i]), box.extend(places[i]);
-    const double gap = std::max(options.gap_px * footprint, options.gap * box.sizes().norm());
+    const double gap = std::max(kGapPx * footprint, least_gap * box.sizes().norm());
     for (size_t i = 0; i < places.size(); ++i) {
       if (own[group[i]] || box.exteriorDistance(places[i]) > gap) continue;
       more |= own[group[i]] = std::any_of(taken.begin(), taken.end(), [&](const Vector2d& p) {
@@ -152,8 +161,8 @@ std::vector<Vector2d> grown(const std::vector<Vector2d>& places, const std::vect
 
 // Positions of the points that others on the same line bear out.
 std::vector<Vector3d> borne_out(const std::vector<EdgePoint>& points, double footprint,
-                                const RegionOptions& options) {
-  const double reach = options.line_px * footprint, aside = options.table_px * footprint;
+                                int min_views) {
+  const double reach = kLinePx * footprint, aside = kTablePx * footprint;
   Eigen::Matrix3Xd positions(3, points.size());
   for (size_t i = 0; i < points.size(); ++i) positions.col(i) = points[i].position;
   const KdTree tree(positions);
@@ -166,8 +175,8 @@ std::vector<Vector3d> borne_out(const std::vector<EdgePoint>& points, double foo
     int others = -1;  // it meets itself
     double views = 0;
     for (const int j : tree.within(p.position, reach))
-      if (bears_out(p, points[j])) ++others, views += points[j].views - options.min_views;
-    if (others > 0 && views >= options.line_views) out.push_back(p.position);
+      if (bears_out(p, points[j])) ++others, views += points[j].views - min_views;
+    if (others > 0 && views >= kLineViews) out.push_back(p.position);
   }
   return out;
 }
@@ -225,48 +234,45 @@ ObjectRegion find_object(const std::vector<EdgePoint>& all, const std::vector<Ve
                          const Vector3d& middle, double reach, double footprint,
                          const RegionOptions& options) {
   ObjectRegion region;
-  const double margin = options.margin_px * footprint;
-  const std::vector<Vector3d> points = borne_out(all, footprint, options);
+  const double margin = kFootPx * footprint;
+  const std::vector<Vector3d> points = borne_out(all, footprint, options.min_views);
   if (points.empty() || cameras.empty()) return region;
   // Without a table nothing tells things from the object: all points may be of it.
   std::vector<Vector3d> any;
   for (const EdgePoint& p : all) any.push_back(p.position);
-  region.box = box_of(any, options.reach_px * footprint);
-  const std::optional<Plane> table = find_table(points, cameras, footprint, options);
+  region.box = box_of(any, kAbovePx * footprint);
+  const std::optional<Plane> table = find_table(points, cameras, footprint, options.seed);
   if (!table) return region;
   const Vector3d x = table->normal().unitOrthogonal();
   region.frame << x.transpose(), table->normal().cross(x).transpose();
 
   std::vector<Vector2d> places;
   for (const Vector3d& p : points)
-    if (table->signedDistance(p) > options.above_px * footprint) places.push_back(region.frame * p);
+    if (table->signedDistance(p) > kPrintPx * footprint) places.push_back(region.frame * p);
   int count = 0;
-  const std::vector<int> group =
-      groups_of(in_space(places), 0.5 * options.gap_px * footprint, &count);
+  const std::vector<int> group = groups_of(in_space(places), 0.5 * kGapPx * footprint, &count);
   if (count == 0) return region;
   std::vector<Vector2d> known;
   for (const Vector3d& p : options.known) known.push_back(region.frame * p);
   const std::vector<char> start =
       groups_of_object(places, group, count, region.frame * middle, kNear * reach, known);
-  const std::vector<Vector2d> own = grown(places, group, start, footprint, options);
+  const std::vector<Vector2d> own = grown(places, group, start, footprint, kGap);
   region.table = table;
-  region.above = highest_print(*table, points, footprint, options.above_px * footprint);
-  region.outline = convex_hull(widened(own, options.reach_px * footprint));
+  region.above = highest_print(*table, points, footprint, kPrintPx * footprint);
+  region.outline = convex_hull(widened(own, kAbovePx * footprint));
   region.outline_on_table = convex_hull(widened(own, margin));
-  RegionOptions near_by = options;
-  near_by.gap = 0;
   const std::vector<Vector2d> sure =
-      convex_hull(widened(grown(places, group, start, footprint, near_by), margin));
+      convex_hull(widened(grown(places, group, start, footprint, 0), margin));
   std::vector<Vector3d> inside;
   for (const Vector3d& p : points) {
     const Vector2d place = region.frame * p;
-    const bool stands = table->signedDistance(p) > options.above_px * footprint;
+    const bool stands = table->signedDistance(p) > kPrintPx * footprint;
     if (!stands || !is_inside(region.outline, place)) continue;
     if (is_inside(sure, place)) region.edges.push_back(p);
     inside.push_back(p);
     inside.push_back(table->projection(p));  // it stands there, whether that is seen or not
   }
-  region.box = box_of(inside, options.reach_px * footprint);
+  region.box = box_of(inside, kAbovePx * footprint);
   return region;
 }
 

@@ -10,17 +10,8 @@
 namespace sketchsplat {
 
 struct RegionOptions {
-  int min_views = 4;      ///< that any point has; those beyond them count
-  double line_px = 30;    ///< [px] along its tangent, within which others bear a point out
-  double line_views = 6;  ///< views beyond min_views that these and the point have together
-  double table_px = 2;    ///< [px] of points on the table
-  double above_px = 6;    ///< [px] over the table, from where on a point is no print on it, at most
-  double gap_px = 24;     ///< [px] seen from above, that parts the object from other things,
-  double gap = 0.12;      ///< in diameters of the object, if that is more: large things fall apart
-  double margin_px = 4;   ///< [px] around the object's points, on the table
-  double reach_px = 20;   ///< [px] the same above it, where nothing else is near
-  double least_share = 0.1;  ///< of the points that lie on a plane for it to be a table
-  int seed = 0;              ///< of the planes that are tried
+  int min_views = 4;  ///< that any point has; those beyond them count
+  int seed = 0;       ///< of the planes that are tried
   /// Edges of the object that an earlier look has told: what stands among them is part of it.
   std::vector<Eigen::Vector3d> known;
 };

@@ -27,7 +27,16 @@ constexpr int kCoarseRounds = 2, kRounds = 3;  // of colours and cuts
 constexpr int kAgainPx = 3;     // [px] around what most views hold, where it may be, too
 constexpr double kPart = 0.25;  // of the object, less than which is no part that touches it nowhere
 constexpr int kFewestViews = 3;
-constexpr int kFewestWhole = 1;  // views that show all of the object
+constexpr int kFewestWhole = 1;        // views that show all of the object
+constexpr double kObjectPx = 180;      // [px] of the object's longer side in pictures that are cut
+constexpr double kMostOutvoted = 0.1;  // share of the views that may leave out what others hold
+// Share of a silhouette that all views together do not hold, and the other way round, up to which
+// its view is trusted.
+constexpr double kMostDisagreement = 0.1;
+constexpr double kLeastCut =
+    0.8;  // share of the known edges with fewer of which a first cut is wrong
+constexpr double kLeastEdges = 0.95;   // of the object's known edges, that silhouettes must hold
+constexpr double kLeastTrusted = 0.5;  // of the views, with fewer of which nothing is known
 
 // Places that nearly all views which see them hold, on a grid.
 struct Held {
@@ -36,7 +45,7 @@ struct Held {
 };
 
 Held held_by_most(const std::vector<View>& views, const std::vector<PictureCut>& cuts,
-                  const ObjectRegion& region, double most_outvoted) {
+                  const ObjectRegion& region) {
   Held out;
   out.cell = region.box.sizes().maxCoeff() / kCells;
   const Eigen::Array3i n = (region.box.sizes().array() / out.cell).ceil().cast<int>().max(1);
@@ -57,7 +66,7 @@ Held held_by_most(const std::vector<View>& views, const std::vector<PictureCut>&
       ++asked;
       no += far > kEndPx + 0.5 * cell_px;
     }
-    held[size_t(i)] = asked >= kFewestViews && no <= most_outvoted * asked;
+    held[size_t(i)] = asked >= kFewestViews && no <= kMostOutvoted * asked;
   });
   for (int i = 0; i < int(held.size()); ++i)
     if (held[size_t(i)]) out.places.push_back(place(i));
@@ -171,23 +180,21 @@ std::vector<cv::Mat1b> for_each(const std::vector<View>& views, const std::vecto
 
 // First cuts; what leaves out most of the known edges is none.
 void cut_first(Start start, const std::vector<View>& views, const ObjectRegion& edges,
-               const ObjectRegion& region, const SilhouetteOptions& options,
-               std::vector<PictureCut>* cuts) {
+               const ObjectRegion& region, std::vector<PictureCut>* cuts) {
   cut_again(for_each(views, *cuts,
                      [&](const ShrunkView& v) { return first_of(start, may_be(v, region)); }),
             kCoarseRounds, cuts);
   parallel_for(int(views.size()), 1, [&](int v) {
     PictureCut& cut = (*cuts)[v];
     if (cut.denominator == 0) return;
-    if (cut.share(views[v], edges.edges) < options.least_cut) cut.mask.release();
+    if (cut.share(views[v], edges.edges) < kLeastCut) cut.mask.release();
   });
 }
 
 // What others do not hold is no object, whatever its colours: without it these are told better. A
 // cut that loses what others hold does not count.
 void cut_what_most_hold(Start start, const std::vector<View>& views, const Held& held,
-                        const ObjectRegion& region, const SilhouetteOptions& options,
-                        std::vector<PictureCut>* cuts) {
+                        const ObjectRegion& region, std::vector<PictureCut>* cuts) {
   const std::vector<PictureCut> before = *cuts;
   const auto again = [&](const ShrunkView& shrunk) {
     const cv::Mat1b likely = covered(shrunk, held);
@@ -198,29 +205,28 @@ void cut_what_most_hold(Start start, const std::vector<View>& views, const Held&
     PictureCut& cut = (*cuts)[v];
     if (cut.denominator == 0) return;
     const cv::Mat1b sure = surely_covered({views[v], cut.denominator}, held, region);
-    const bool good = !cut.mask.empty() &&
-                      (cv::countNonZero(sure) == 0 || share(cut.mask, sure) >= options.least_cut);
+    const bool good =
+        !cut.mask.empty() && (cv::countNonZero(sure) == 0 || share(cut.mask, sure) >= kLeastCut);
     if (!good) cut = before[v];
   });
 }
 
 // `cuts`: as they were read.
 Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const ObjectRegion& edges,
-                             const ObjectRegion& region, const SilhouetteOptions& options,
-                             std::vector<PictureCut> cuts) {
+                             const ObjectRegion& region, std::vector<PictureCut> cuts) {
   Silhouettes out;
   const int n = int(views.size());
-  cut_first(start, views, edges, region, options, &cuts);
-  Held held = held_by_most(views, cuts, region, options.most_outvoted);
+  cut_first(start, views, edges, region, &cuts);
+  Held held = held_by_most(views, cuts, region);
   if (held.places.empty()) return out;
   Held beside;
   part_from_things(&held, &beside);
-  cut_what_most_hold(start, views, held, region, options, &cuts);
-  held = held_by_most(views, cuts, region, options.most_outvoted);
+  cut_what_most_hold(start, views, held, region, &cuts);
+  held = held_by_most(views, cuts, region);
   if (held.places.empty()) return out;
   part_from_things(&held, &beside);
   // Views may agree to take a face that looks like the table for it: edges tell.
-  if (share_held(edges.edges, held, beside, region.box.min()) < options.least_edges) return out;
+  if (share_held(edges.edges, held, beside, region.box.min()) < kLeastEdges) return out;
   out.region = region_around(held.places, 2 * held.cell, edges);
   out.mask.resize(n);
   out.slack_px.assign(n, 0);
@@ -232,8 +238,7 @@ Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const 
     const ShrunkView shrunk{views[v], cut.denominator};
     const cv::Mat1b all = covered(shrunk, held), sure = surely_covered(shrunk, held, region);
     agreement[v] = share(all, cut.mask);
-    if (std::min(agreement[v], share(grown(cut.mask, 1), sure)) < 1 - options.most_disagreement)
-      return;
+    if (std::min(agreement[v], share(grown(cut.mask, 1), sure)) < 1 - kMostDisagreement) return;
     const cv::Mat1b silhouette = grown((cut.mask & all) | sure, int(std::ceil(kEndPx)));
     whole[v] = is_whole(silhouette);
     out.mask[v] = at_full_size(silhouette, views[v].camera, cut.denominator);
@@ -241,7 +246,7 @@ Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const 
   });
   for (const Image<uint8_t>& mask : out.mask) out.trusted += !mask.empty();
   out.agreement = median(std::move(agreement));
-  const bool enough = out.trusted >= std::max<double>(kFewestViews, options.least_trusted * n) &&
+  const bool enough = out.trusted >= std::max<double>(kFewestViews, kLeastTrusted * n) &&
                       std::count(whole.begin(), whole.end(), 1) >= kFewestWhole;
   if (!enough) out.mask.clear();
   return out;
@@ -250,19 +255,18 @@ Silhouettes silhouettes_from(Start start, const std::vector<View>& views, const 
 }  // namespace
 
 Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion& edges,
-                             const std::function<Picture(int view, int denominator)>& read,
-                             const SilhouetteOptions& options) {
+                             const std::function<Picture(int view, int denominator)>& read) {
   if (edges.box.isEmpty() || views.size() < size_t(kFewestViews)) return {};
   const ObjectRegion region = wider(edges, kBeyond * edges.box.sizes().maxCoeff());
   std::vector<PictureCut> cuts(views.size());
   parallel_for(int(cuts.size()), 1, [&](int v) {
-    cuts[v] = read_cut(views[v], region, options.object_px, [&](int d) { return read(v, d); });
+    cuts[v] = read_cut(views[v], region, kObjectPx, [&](int d) { return read(v, d); });
   });
   // What is likely tells objects among things of many colours, but may be too little of one whose
   // colours the table has, too.
-  const Silhouettes likely = silhouettes_from(Start::kLikely, views, edges, region, options, cuts);
+  const Silhouettes likely = silhouettes_from(Start::kLikely, views, edges, region, cuts);
   if (!likely.mask.empty()) return likely;
-  return silhouettes_from(Start::kMayBe, views, edges, region, options, cuts);
+  return silhouettes_from(Start::kMayBe, views, edges, region, cuts);
 }
 
 namespace {

@@ -9,17 +9,6 @@
 
 namespace sketchsplat {
 
-struct SilhouetteOptions {
-  double object_px = 180;      ///< [px] of the object's longer side in the pictures that are cut
-  double most_outvoted = 0.1;  ///< share of the views that may leave out what others hold
-  /// Share of a silhouette that all views together do not hold, and the other way round, up to
-  /// which its view is trusted.
-  double most_disagreement = 0.1;
-  double least_cut = 0.8;     ///< share of the known edges with fewer of which a first cut is wrong
-  double least_edges = 0.95;  ///< share of the object's known edges that silhouettes must hold
-  double least_trusted = 0.5;  ///< share of the views, with fewer of which nothing is known
-};
-
 /// Silhouettes of one rigid object are consistent: what most views hold, projected, is each of
 /// them. Pictures that are cut by colours alone (cut_out.h) need not be: that they are is what
 /// tells right ones.
@@ -40,8 +29,7 @@ struct Silhouettes {
 /// shrunk by a whole denominator of at least 1; called from several threads, it may throw
 /// InputError: that view is not trusted.
 Silhouettes find_silhouettes(const std::vector<View>& views, const ObjectRegion& region,
-                             const std::function<Picture(int view, int denominator)>& read,
-                             const SilhouetteOptions& options = {});
+                             const std::function<Picture(int view, int denominator)>& read);
 
 /// 1 on the mask and up to `px` around it, 0 elsewhere.
 Image<float> alpha_around(const Image<uint8_t>& mask, double px);

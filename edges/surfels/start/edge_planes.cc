@@ -13,8 +13,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostDistinct = 400;               // planes to choose from
-constexpr int kNearest = 8;                      // rank of the nearest partner
+constexpr double kPlanePx = 1;         // [pixel footprints] from a point to its plane
+constexpr double kPlaneDeg = 6;        // [deg] between a tangent and the plane
+constexpr double kPartDeg = 25;        // [deg] least turn between the two planes of an edge
+constexpr double kLeastNew = 0.5;      // share of a plane's points that no other planes explain
+constexpr int kFewestPoints = 12;      // that make a plane; and
+constexpr double kLeastShare = 0.006;  // of all points
+constexpr int kTries = 6000;           // pairs of points that are drawn
+constexpr int kMostPlanes = 48;        // at most 64
+constexpr int kMostDistinct = 400;     // planes to choose from
+constexpr int kNearest = 8;            // rank of the nearest partner
 constexpr double kSame = 0.99, kShared = 0.7;    // cosine, and share of the points, of one plane
 constexpr double kWithinPx = 12, kBesidePx = 3;  // [pixel footprints] what lies around a point
 // Score of a plane all of whose tangents are parallel, for that of one with edges of two
@@ -30,12 +38,13 @@ struct Candidate {
 
 class EdgePlanes {
  public:
-  EdgePlanes(const SureEdges& edges, const EdgePlaneOptions& options)
-      : edges_(edges), options_(options), n_(int(edges.position.cols())) {
-    reach_ = options.reach_px * edges.footprint;
-    sine_ = std::sin(options.angle_deg * M_PI / 180);
-    fewest_ = std::max(options.fewest, int(options.least_share * n_));
-  }
+  EdgePlanes(const SureEdges& edges, int seed)
+      : edges_(edges),
+        seed_(seed),
+        n_(int(edges.position.cols())),
+        reach_(kPlanePx * edges.footprint),
+        sine_(std::sin(kPlaneDeg * M_PI / 180)),
+        fewest_(std::max(kFewestPoints, int(kLeastShare * n_))) {}
 
   std::vector<EdgePlane> run() const {
     std::vector<Candidate> candidates = distinct(drawn());
@@ -47,8 +56,8 @@ class EdgePlanes {
   // Planes through the tangent of one point and another point, the best supported first.
   std::vector<Candidate> drawn() const {
     if (n_ < fewest_) return {};
-    std::mt19937 random(1u + options_.seed);
-    std::vector<std::pair<int, double>> pairs(options_.tries);
+    std::mt19937 random(1u + seed_);
+    std::vector<std::pair<int, double>> pairs(kTries);
     for (auto& p : pairs) p = {int(random() % n_), (random() % 65536) / 65536.0};
     std::vector<Candidate> out(pairs.size());
     parallel_for(int(pairs.size()), 16, [&](int k) {
@@ -145,7 +154,7 @@ class EdgePlanes {
   }
 
   std::vector<EdgePlane> choose(std::vector<Candidate>* candidates) const {
-    const double part = std::cos(options_.part_deg * M_PI / 180);
+    const double part = std::cos(kPartDeg * M_PI / 180);
     std::vector<EdgePlane> planes;
     std::vector<std::vector<int>> of_point(n_);
     std::vector<char> full(n_, 0);
@@ -155,14 +164,14 @@ class EdgePlanes {
         if (std::abs(planes[p].normal().dot(plane.normal())) > part) return false;
       return true;
     };
-    while (int(planes.size()) < options_.most) {
+    while (int(planes.size()) < kMostPlanes) {
       Candidate* best = nullptr;
       double most = 0;
       for (Candidate& c : *candidates) {
         if (c.taken) continue;
         const auto gain = std::count_if(c.points.begin(), c.points.end(),
                                         [&](int k) { return is_new(k, c.plane); });
-        if (gain < fewest_ || double(gain) < options_.least_new * double(c.points.size())) continue;
+        if (gain < fewest_ || double(gain) < kLeastNew * double(c.points.size())) continue;
         if (c.weight * double(gain) > most) most = c.weight * double(gain), best = &c;
       }
       if (!best) break;
@@ -177,16 +186,15 @@ class EdgePlanes {
   }
 
   const SureEdges& edges_;
-  const EdgePlaneOptions& options_;
-  const int n_;
-  double reach_, sine_;
-  int fewest_;
+  const int seed_, n_;
+  const double reach_, sine_;
+  const int fewest_;
 };
 
 }  // namespace
 
-std::vector<EdgePlane> edge_planes(const SureEdges& edges, const EdgePlaneOptions& options) {
-  return EdgePlanes(edges, options).run();
+std::vector<EdgePlane> edge_planes(const SureEdges& edges, int seed) {
+  return EdgePlanes(edges, seed).run();
 }
 
 }  // namespace sketchsplat

@@ -184,9 +184,7 @@ void carve_sights(const SureEdges& sure, const PhotoHullOptions& options,
   if (share <= 0 || sure.lines.empty()) return;
   const CellGrid hull = *grid;
   const double most = uncovered(hull, witnesses) + kMostPierced;
-  EdgePlaneOptions wanted;
-  wanted.seed = options.seed;
-  const std::vector<EdgePlane> planes = edge_planes(sure, wanted);
+  const std::vector<EdgePlane> planes = edge_planes(sure, options.seed);
   samples->planes = int(planes.size());
   const PlaneCarving carving(sure, planes, hull);
   for (int times = 1; times <= kShares && times * share < 1; ++times) {
