@@ -11,8 +11,8 @@ suites, too, hours of two cores. What was measured with the same program before 
 A row of the table: the suite (eval/suites/SUITE.yml, or abc-nef, or threads), the labels of the
 rows that count (axis=..., at=..., variant=..., with * for anything; empty: all rows), the metric
 (a number of rows.json: its mean; a number of solids, or a sum of such: their sum), what was
-measured when the floor was set, and the floor (none: nobody has measured it). --write measures and sets both anew, at the same
-distance.
+measured when the floor was set (large suites: as docs/ have it), and the floor; both are empty if
+nobody has measured it. --write measures and sets both anew, at the same distance.
 """
 import argparse
 import csv
