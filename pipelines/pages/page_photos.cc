@@ -33,20 +33,18 @@ int longest_side(const View& view) { return std::max({view.camera.width, view.ca
 
 // 8 bit RGB on white.
 cv::Mat small_picture(const Picture& picture, const cv::Size& size) {
-  const std::vector<float>& alpha = picture.alpha.data;
-  cv::Mat3b full(picture.height(), picture.width());
-  uchar* to = full.ptr();
+  const float* alpha = picture.alpha.empty() ? nullptr : picture.alpha.data.data();
+  cv::Mat planes[3], full, *plane = planes;
   for (const Image<float>* channel : {&picture.red, &picture.green, &picture.blue}) {
-    const auto set = [&](size_t i, float v) {
-      to[3 * i] = uchar(std::max(0.f, std::min(255.f, v * 255 + 0.5f)));
-    };
-    const std::vector<float>& from = channel->data;
-    if (alpha.empty())
-      for (size_t i = 0; i < from.size(); ++i) set(i, from[i]);
-    else
-      for (size_t i = 0; i < from.size(); ++i) set(i, from[i] * alpha[i] + 1 - alpha[i]);
-    ++to;
+    plane->create(picture.height(), picture.width(), CV_8U);
+    const float* from = channel->data.data();
+    uchar* to = (plane++)->ptr();
+    for (size_t i = 0, n = channel->data.size(); i < n; ++i) {
+      const float v = alpha ? from[i] * alpha[i] + 1 - alpha[i] : from[i];
+      to[i] = uchar(std::max(0.f, std::min(255.f, v * 255 + 0.5f)));
+    }
   }
+  cv::merge(planes, 3, full);
   // Over blocks of less than two pixels a mean is hardly smoother, and takes five times as long.
   const bool alike = picture.width() < 2 * size.width;
   cv::Mat out;
