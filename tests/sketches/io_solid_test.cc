@@ -77,7 +77,8 @@ TEST(SolidJson, SaysWhatIsNoSolid) {
   const std::string text = text_of(plate_with_hole(0.5));
   EXPECT_THAT(refusal(text, "\"plane\"", "\"plain\""),
               HasSubstr("in surfaces[0].kind, found \"plain\""));
-  EXPECT_THAT(refusal(text, "\"surface\":6", "\"surface\":7"), HasSubstr("below 7, found 7"));
+  EXPECT_THAT(refusal(text, "\"surface\":6", "\"surface\":7"),
+              HasSubstr("below 7 in faces[6].surface, found 7"));
   EXPECT_THAT(refusal(text, "[[[", "[[[9"), HasSubstr("below 14"));
   EXPECT_THAT(refusal(text, "\"axis\":[0.0,0.0,-1.0]", "\"axis\":[0.0,0.0,-2.0]"),
               HasSubstr("a unit vector"));
