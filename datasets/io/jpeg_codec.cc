@@ -74,8 +74,9 @@ bool decode_jpeg(const std::string& file, int denominator, Planes* planes, std::
   // The first scan spends at least one bit on a block of 8 x 8 pixels: a header that promises more
   // is broken and must not make us allocate.
   const std::int64_t pixels = std::int64_t(header.width) * header.height;
-  if (pixels / 1024 > std::int64_t(file.size()) || pixels > kMostPixels) {
-    *found = pixels > kMostPixels ? "too many pixels" : "more pixels than the file can hold";
+  const bool fits = pixels / 1024 <= std::int64_t(file.size());
+  if (!fits || pixels > kMostPixels) {
+    *found = fits ? "too many pixels" : "more pixels than the file can hold";
     return false;
   }
   planes->width = (header.width + denominator - 1) / denominator;
