@@ -102,7 +102,8 @@ class Axis:
         parts = groups(self.rows, "scene").values()
         spread = max(max(f5) - min(f5) for f5 in (numbers(rows, "F5") or [0] for rows in parts))
         same = all(len({row.get("result") for row in rows}) == 1 for rows in parts)
-        return [self.axis["title"], self.variant, " to ".join([list(self.at)[0], list(self.at)[-1]]),
+        ends = list(self.at)
+        return [self.axis["title"], self.variant, f"{ends[0]} to {ends[-1]}",
                 show(self.means("F5")[0]), show(spread, ".2g"), "yes" if same else "no"]
 
     def growth(self, quantity):
@@ -172,7 +173,8 @@ def draw_axis(plt, results):
         shown = [i for i, f in enumerate(axis.means("F5")) if f is not None]
         levels = [axis.levels[i] for i in shown]
         parts = [numbers(list(axis.at.values())[i], "F5") for i in shown]
-        plot.plot(levels, [mean(p) for p in parts], "o-", color=f"C{k}", label=f"F5, {axis.variant}")
+        plot.plot(levels, [mean(p) for p in parts], "o-", color=f"C{k}",
+                  label=f"F5, {axis.variant}")
         plot.fill_between(levels, [min(p) for p in parts], [max(p) for p in parts], color=f"C{k}",
                           alpha=0.15)
         visible = axis.means("F5_visible")
@@ -216,9 +218,9 @@ def main():
     folder = sys.argv[1]
     with open(os.path.join(folder, "rows.json"), encoding="utf-8") as file:
         data = json.load(file)
+    of_axes = groups(data["rows"], "axis")
     axes = [Axis(axis, variant, rows) for axis in data["axes"]
-            for variant, rows in groups([row for row in data["rows"] if row["axis"] == axis["name"]],
-                                        "variant").items()]
+            for variant, rows in groups(of_axes.get(axis["name"], []), "variant").items()]
     write_tables(axes, folder)
     try:
         import matplotlib
