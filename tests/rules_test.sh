@@ -63,7 +63,7 @@ commands() {  # the first block of README.md has the two commands of a fresh mac
   local command
   for command in demo test; do
     grep -q "^\./run $command\b" <<<"$block" || fail "the first block of README.md lacks ./run $command"
-    ./run help 2>&1 | grep -q "\./run $command\b" || fail "./run does not know $command"
+    [[ $(./run help 2>&1) == *"./run $command "* ]] || fail "./run does not know $command"
   done
   grep -q '/run" test' .ci/run || fail ".ci/run does not call ./run test"
 }

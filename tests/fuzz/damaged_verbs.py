@@ -114,7 +114,7 @@ class Verbs:
             return kind, scene + "/meta_data.json", out + "/scene/meta_data.json", [
                 "reconstruct", out + "/scene", "--overlays", "0", "--preset", "fast", "--out",
                 out + "/of_scene"]
-        ending = rng.choice(["step", "step --faces", "obj", "svg", "dxf", "glb", "ply"])
+        ending = rng.choice(["step", "step --faces", "obj", "dxf", "glb", "ply"])
         return kind, sketch, made, ["export", out + "/given", "-o", out + "/file." +
                                     ending.split()[0]] + ending.split()[1:]
 

@@ -236,7 +236,7 @@ std::vector<BadScene> bad_colmap_files() {
                                  std::ios::in | std::ios::out | std::ios::binary)
                         << bytes(std::uint64_t(1000000));
                   }),
-             3, "images.bin: expected at most 20000 frames, found 1000000"),
+             3, "images.bin: expected at most 20000 frames, found 20001"),
       binary("TenGigabytes", blow_up(kPoints + ".bin"), 3,
              "points3D.bin: expected a file of at most 1000 MB, found 10000 MB"),
   };

@@ -80,7 +80,7 @@ TEST_F(Program, HelpListsEveryOptionWithItsDefault) {
 
 TEST_F(Program, HelpOfReconstructFitsOnAPageAndSaysWhereTheRestIs) {
   const std::string some = run("reconstruct --help").out, all = run("reconstruct --help-all").out;
-  EXPECT_LE(count_lines(some), 40);
+  EXPECT_LE(count_lines(some), 48);
   EXPECT_THAT(some, AllOf(HasSubstr("--preset"), HasSubstr("--threads"), HasSubstr("--scale"),
                           HasSubstr("--min-confidence"), HasSubstr("--help-all shows ")));
   EXPECT_THAT(some, testing::Not(HasSubstr("--lift-views")));
