@@ -11,7 +11,7 @@ cmake --install "$build" --prefix "$folder/first" --component program >/dev/null
 mv "$folder/first" "$folder/moved"
 prefix=$folder/moved
 for file in bin/sketchsplat lib/sketchsplat/sketchsplat_synthesis.so \
-  lib/sketchsplat/sketchsplat_image_formats.so lib/sketchsplat/sketchsplat_charts.so \
+  lib/sketchsplat/sketchsplat_image_formats.so lib/sketchsplat/charts.py \
   share/doc/sketchsplat/copyright share/doc/sketchsplat/CHANGELOG.md \
   lib/sketchsplat/sketchsplat_brep.so share/sketchsplat/slurm/submit.sh \
   share/sketchsplat/freecad/InitGui.py share/sketchsplat/freecad/sketchsplat_workbench/importer.py; do
@@ -28,7 +28,7 @@ run() {  # PLUGIN ARGUMENTS: runs the program, which must load that one
 }
 run sketchsplat_synthesis.so synthesize box --views 12 --resolution 160 --outputs none --out "$folder/scene"
 run "" reconstruct "$folder/scene" --preset fast --out "$folder/result"
-run sketchsplat_charts.so bench "$folder/scene" --presets fast --out "$folder/bench"
+run "" bench "$folder/scene" --presets fast --out "$folder/bench"
 run "" batch "$folder/scene" --preset fast --out "$folder/batch"
 [ -s "$folder/batch/scene/sketch.step" ] || fail "no result"
 run sketchsplat_brep.so reconstruct "$folder/scene" --preset fast --out "$folder/solid"
